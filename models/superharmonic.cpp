@@ -1,0 +1,101 @@
+#include "models/superharmonic.hpp"
+
+#include <fmt/format.h>
+
+#include <stdexcept>
+
+namespace whirl::models {
+
+void SuperharmonicOptions::validate() const {
+  if (order < 2 || order > 50) throw std::invalid_argument(fmt::format("superharmonic order must be in 2..50, got {}", order));
+}
+
+SuperharmonicModel::SuperharmonicModel(const StayParameters<double>& stay, const SuperharmonicOptions& options, std::vector<Lens> lenses)
+    : stay_(stay), options_(options), lenses_(std::move(lenses)), model_(stay_model(stay.cable, options.coefficients)) {
+  options_.validate();
+  for (const auto& lens : lenses_) cable_moves_ = cable_moves_ || lens.affects_cable();
+}
+
+SuperharmonicFlow::SuperharmonicFlow(const StayParameters<double>& stay, const SuperharmonicOptions& options, std::vector<Lens> lenses)
+    : DualProblem(SuperharmonicModel(stay, options, lenses), 4, static_cast<int>(lenses.size()), true) {
+  std::vector<std::string> names;
+  for (const auto& lens : lenses) names.push_back(lens.name());
+  name_parameters(names);
+  add_reflection({Eigen::Vector4d(-1.0, -1.0, 1.0, 1.0), "WH"});
+}
+
+void SuperharmonicFlow::do_residual(In u, Out r) const {
+  const auto c = model().coefficients<double>({u.data() + 4, static_cast<std::size_t>(parameters())});
+  slow_flow<double, double>(c, u[0], u[1], u[2], u[3], {r.data(), 4});
+}
+
+template <int K>
+void SuperharmonicFlow::linearise(In u, double* r, MatrixOut j) const {
+  using P = Dual<double, K>;
+  std::array<P, K> p;
+  for (int i = 0; i < K; ++i) p[std::size_t(i)] = seed<P>(u[4 + i], i);
+  const auto cp = model().coefficients<P>(p);
+  const double u1 = u[0], v1 = u[1], u2 = u[2], v2 = u[3];
+  std::array<P, 4> rp;
+  slow_flow<P, P>(cp, P(u1), P(v1), P(u2), P(v2), rp);
+  for (int row = 0; row < 4; ++row) {
+    if (r) r[row] = rp[std::size_t(row)].v;
+    for (int i = 0; i < K; ++i) j(row, 4 + i) = rp[std::size_t(row)].d[std::size_t(i)];
+  }
+  const double g1 = cp.g1.v, g2 = cp.g2.v, g3 = cp.g3.v, g4 = cp.g4.v, d1 = cp.damping1.v, d2 = cp.damping2.v, scale = 1.0 / cp.nw2.v;
+  const double a = u1 * u1 + v1 * v1, b = u2 * u2 + v2 * v2;
+  const double s1 = u1 * u1 - v1 * v1, t1 = 2.0 * u1 * v1, s2 = u2 * u2 - v2 * v2, t2 = 2.0 * u2 * v2;
+  const double m1 = cp.detuning1.v + g1 * a + 2.0 * g2 * b, m2 = cp.detuning2.v + g4 * b + 2.0 * g3 * a;
+  // d/d(u1, v1) of the first pair; d/d(u2, v2) of the second likewise with the roles exchanged
+  j(0, 0) = scale * (-d1 - 2.0 * g1 * u1 * v1 - g2 * t2);
+  j(0, 1) = scale * (-m1 - 2.0 * g1 * v1 * v1 + g2 * s2);
+  j(1, 0) = scale * (m1 + 2.0 * g1 * u1 * u1 + g2 * s2);
+  j(1, 1) = scale * (-d1 + 2.0 * g1 * u1 * v1 + g2 * t2);
+  j(0, 2) = scale * (-4.0 * g2 * u2 * v1 - 2.0 * g2 * (v2 * u1 - u2 * v1));
+  j(0, 3) = scale * (-4.0 * g2 * v2 * v1 - 2.0 * g2 * (u2 * u1 + v2 * v1));
+  j(1, 2) = scale * (4.0 * g2 * u2 * u1 + 2.0 * g2 * (u2 * u1 + v2 * v1));
+  j(1, 3) = scale * (4.0 * g2 * v2 * u1 + 2.0 * g2 * (u2 * v1 - v2 * u1));
+  j(2, 2) = scale * (-d2 - 2.0 * g4 * u2 * v2 - g3 * t1);
+  j(2, 3) = scale * (-m2 - 2.0 * g4 * v2 * v2 + g3 * s1);
+  j(3, 2) = scale * (m2 + 2.0 * g4 * u2 * u2 + g3 * s1);
+  j(3, 3) = scale * (-d2 + 2.0 * g4 * u2 * v2 + g3 * t1);
+  j(2, 0) = scale * (-4.0 * g3 * u1 * v2 - 2.0 * g3 * (v1 * u2 - u1 * v2));
+  j(2, 1) = scale * (-4.0 * g3 * v1 * v2 - 2.0 * g3 * (u1 * u2 + v1 * v2));
+  j(3, 0) = scale * (4.0 * g3 * u1 * u2 + 2.0 * g3 * (u1 * u2 + v1 * v2));
+  j(3, 1) = scale * (4.0 * g3 * v1 * u2 + 2.0 * g3 * (u1 * v2 - v1 * u2));
+}
+
+void SuperharmonicFlow::do_linearise(In u, Out r, MatrixOut j) const {
+  switch (parameters()) {
+    case 0:
+      return linearise<0>(u, r.data(), j);
+    case 1:
+      return linearise<1>(u, r.data(), j);
+    case 2:
+      return linearise<2>(u, r.data(), j);
+    default:
+      throw std::logic_error("at most two lenses");
+  }
+}
+
+void SuperharmonicFlow::do_jacobian(In u, MatrixOut j) const {
+  Eigen::Vector4d r;
+  do_linearise(u, r, j);
+}
+
+Superharmonic SuperharmonicFlow::observe(In u) const {
+  const auto c = model().coefficients<double>({u.data() + 4, static_cast<std::size_t>(parameters())});
+  const double B0 = std::hypot(c.Z0_re, c.Z0_im);
+  return {std::hypot(u[0], u[1]), std::hypot(u[2], u[3]), std::atan2(u[1], u[0]), std::atan2(u[3], u[2]), B0, std::atan2(c.Z0_im, c.Z0_re)};
+}
+
+Vector SuperharmonicFlow::motion(In u, double t) const {
+  const auto c = model().coefficients<double>({u.data() + 4, static_cast<std::size_t>(parameters())});
+  const double nw = 0.5 * c.nw2, w = nw / model().order(), C = std::cos(nw * t), s = std::sin(nw * t), C0 = std::cos(w * t), s0 = std::sin(w * t);
+  Vector q(4);
+  q << u[0] * C - u[1] * s, u[2] * C - u[3] * s + c.Z0_re * C0 - c.Z0_im * s0,  //
+      -nw * (u[0] * s + u[1] * C), -nw * (u[2] * s + u[3] * C) - w * (c.Z0_re * s0 + c.Z0_im * C0);
+  return q;
+}
+
+}  // namespace whirl::models

@@ -1,0 +1,162 @@
+#pragma once
+/// Averaged superharmonic response of order n >= 2, [NielsenKirkegaard2002, eqs (36)-(45)] with cos 2Phi in the last of (41) and P_3 = gamma4 B0^3
+/// / 3.
+///
+///     q1 = Re[ Z1 e^{i n w t} ],   q2 = Re[ Z0 e^{i w t} + Z2 e^{i n w t} ],   Z1 = A e^{i Psi1}, Z2 = B e^{i Psi2}
+///     Z0 = B0 e^{i Psi0} = F2 / (w2^2 - w^2 + 2 i z2 w2 w)                                 linear forced response, frozen
+///
+///     2 n w Z1' = -2 z1 w1 n w Z1 + i [ (D1 + g1 |Z1|^2 + 2 g2 |Z2|^2) Z1 + g2 Z2^2 conj(Z1) ]
+///     2 n w Z2' = -2 z2 w2 n w Z2 + i [ (D2 + g4 |Z2|^2 + 2 g3 |Z1|^2) Z2 + g3 Z1^2 conj(Z2) + E_n ]
+///     D1 = w1^2 - n^2 w^2 + 2 g2 |Z0|^2,  D2 = w2^2 - n^2 w^2 + 2 g4 |Z0|^2,  E_2 = beta2 Z0, E_3 = g4 Z0^3 / 3, E_n = 0 above
+///
+/// State in Cartesian van der Pol coordinates x = (u1, v1, u2, v2), Z = u + i v: regular at A = 0, where whirling is born.
+/// The field is symmetric under (u1, v1) -> -(u1, v1); breaking it is whirling, subtype "WH".
+///
+///     SuperharmonicFlow flow(stay, {.order = 2}, {Lens("omega")});
+///     flow.residual(u, r);          // u = (u1, v1, u2, v2, omega), r = x' [m/s]
+
+#include <complex>
+
+#include "core/dual_problem.hpp"
+#include "models/nielsen_kirkegaard.hpp"
+
+namespace whirl::models {
+
+struct SuperharmonicOptions {
+  int order = 2;
+  Coefficients coefficients = Coefficients::exact;
+  void validate() const;
+};
+
+/// Coefficients of the slow flow at one parameter record. All in s^-2 (detuning, damping), m^-2 s^-2 (gamma), m s^-2 (load).
+template <class S>
+struct SlowFlowCoefficients {
+  S nw2;  ///< 2 n omega
+  S detuning1, detuning2;
+  S damping1, damping2;  ///< 2 z_a w_a n omega
+  S g1, g2, g3, g4;
+  S load_re, load_im;  ///< E_n
+  S Z0_re, Z0_im;      ///< frozen linear response [m]
+};
+
+template <class S>
+SlowFlowCoefficients<S> slow_flow_coefficients(const StayParameters<S>& p, const StayModel<S>& model, int order);
+
+/// The field with x and the coefficients in scalars whose product is R.
+template <class R, class S>
+void slow_flow(const SlowFlowCoefficients<S>& c, const R& u1, const R& v1, const R& u2, const R& v2, std::span<R> r) {
+  const R a = u1 * u1 + v1 * v1, b = u2 * u2 + v2 * v2;
+  const R s1 = u1 * u1 - v1 * v1, t1 = u1 * v1 * 2.0, s2 = u2 * u2 - v2 * v2, t2 = u2 * v2 * 2.0;  // Z^2 = s + i t
+  const R m1 = a * c.g1 + b * (c.g2 * 2.0) + c.detuning1, m2 = b * c.g4 + a * (c.g3 * 2.0) + c.detuning2;
+  r[0] = (-(u1 * c.damping1) - m1 * v1 - (t2 * u1 - s2 * v1) * c.g2) / c.nw2;
+  r[1] = (-(v1 * c.damping1) + m1 * u1 + (s2 * u1 + t2 * v1) * c.g2) / c.nw2;
+  r[2] = (-(u2 * c.damping2) - m2 * v2 - (t1 * u2 - s1 * v2) * c.g3 - c.load_im) / c.nw2;
+  r[3] = (-(v2 * c.damping2) + m2 * u2 + (s1 * u2 + t1 * v2) * c.g3 + c.load_re) / c.nw2;
+}
+
+/// What the lenses turn: parameters to coefficients to field, in any scalar.
+class SuperharmonicModel {
+ public:
+  SuperharmonicModel(const StayParameters<double>& stay, const SuperharmonicOptions& options, std::vector<Lens> lenses);
+
+  template <class S>
+  void residual(std::span<const S> u, std::span<S> r) const {
+    slow_flow<S, S>(coefficients<S>(u.subspan(4)), u[0], u[1], u[2], u[3], r);
+  }
+
+  /// Slow-flow coefficients with the lenses' parameters at p.
+  template <class S>
+  SlowFlowCoefficients<S> coefficients(std::span<const S> p) const;
+
+  const StayParameters<double>& stay() const { return stay_; }
+  const std::vector<Lens>& lenses() const { return lenses_; }
+  int order() const { return options_.order; }
+
+ private:
+  StayParameters<double> stay_;
+  SuperharmonicOptions options_;
+  std::vector<Lens> lenses_;
+  StayModel<double> model_;
+  bool cable_moves_ = false;
+};
+
+/// Amplitudes and phases of a state: what a person reads.
+struct Superharmonic {
+  double A, B;        ///< amplitude of cos(n w t + Psi) in q1, q2 [m]
+  double Psi1, Psi2;  ///< [rad]
+  double B0, Psi0;    ///< linear part of q2, cos(w t + Psi0) [m, rad]
+};
+
+class SuperharmonicFlow : public DualProblem<SuperharmonicModel> {
+ public:
+  SuperharmonicFlow(const StayParameters<double>& stay, const SuperharmonicOptions& options, std::vector<Lens> lenses);
+
+  Superharmonic observe(In u) const;
+  /// q1, q2 and their rates of the ansatz at time t: size 4.
+  Vector motion(In u, double t) const;
+
+ private:
+  // Hand-written: the dual sweep costs five times as much. Tested against it.
+  void do_residual(In u, Out r) const override;
+  void do_jacobian(In u, MatrixOut j) const override;
+  void do_linearise(In u, Out r, MatrixOut j) const override;
+  template <int K>
+  void linearise(In u, double* r, MatrixOut j) const;
+};
+
+// ---------------------------------------------------------------------------------------------------------------------------
+
+template <class S>
+SlowFlowCoefficients<S> slow_flow_coefficients(const StayParameters<S>& p, const StayModel<S>& model, int order) {
+  using std::cos;
+  const auto& k = model.coefficients;
+  const S w = p.omega, w1 = model.modes.omega1, w2 = model.modes.omega2, n(static_cast<double>(order));
+  const S L2 = p.cable.chord_length * p.cable.chord_length, K = stiffness_rate(p.cable), KL2 = K / L2;
+  SlowFlowCoefficients<S> c;
+  c.nw2 = n * w * 2.0;
+  c.damping1 = p.damping_out_of_plane * w1 * c.nw2;
+  c.damping2 = p.damping_in_plane * w2 * c.nw2;
+  c.g1 = KL2 * k.G1 * 0.75;
+  c.g2 = KL2 * k.G2 * 0.25;
+  c.g3 = KL2 * k.G3 * 0.25;
+  c.g4 = KL2 * k.G4 * 0.75;
+  // Z0 = F2 (x - i y) / (x^2 + y^2)
+  const S x = w2 * w2 - w * w, y = p.damping_in_plane * w2 * w * 2.0, scale = in_plane_load(p, model) / (x * x + y * y);
+  c.Z0_re = scale * x;
+  c.Z0_im = -(scale * y);
+  const S Z0Z0 = c.Z0_re * c.Z0_re + c.Z0_im * c.Z0_im, nw = n * w;
+  c.detuning1 = w1 * w1 - nw * nw + c.g2 * Z0Z0 * 2.0;
+  c.detuning2 = w2 * w2 - nw * nw + c.g4 * Z0Z0 * 2.0;
+  c.load_re = c.load_im = S(0.0);
+  if (order == 2) {
+    const S beta2 = K * 0.5 * p.support_amplitude / p.cable.chord_length * cos(p.cable.inclination_deg * (pi / 180.0)) * k.c2;
+    c.load_re = beta2 * c.Z0_re;
+    c.load_im = beta2 * c.Z0_im;
+  } else if (order == 3) {
+    const S g = c.g4 / 3.0;
+    c.load_re = g * (c.Z0_re * c.Z0_re - c.Z0_im * c.Z0_im * 3.0) * c.Z0_re;
+    c.load_im = g * (c.Z0_re * c.Z0_re * 3.0 - c.Z0_im * c.Z0_im) * c.Z0_im;
+  }
+  return c;
+}
+
+template <class S>
+SlowFlowCoefficients<S> SuperharmonicModel::coefficients(std::span<const S> p) const {
+  StayParameters<S> record = promote<S>(stay_);
+  for (std::size_t i = 0; i < lenses_.size(); ++i) lenses_[i].set(record, p[i]);
+  if (cable_moves_) return slow_flow_coefficients(record, stay_model(record.cable, options_.coefficients), options_.order);
+  // Only numbers that leave statics and modes alone: promote what the constructor computed.
+  StayModel<S> m;
+  m.shape = {S(model_.shape.sag), S(model_.shape.sag_ratio), S(model_.shape.irvine_lambda2)};
+  m.modes = {S(model_.modes.frequency_number), S(model_.modes.omega1), S(model_.modes.omega2), S(model_.modes.shape_denominator)};
+  const auto& k = model_.coefficients;
+  m.coefficients.a2 = S(k.a2);
+  m.coefficients.c2 = S(k.c2);
+  m.coefficients.G1 = S(k.G1);
+  m.coefficients.G2 = S(k.G2);
+  m.coefficients.G3 = S(k.G3);
+  m.coefficients.G4 = S(k.G4);
+  return slow_flow_coefficients(record, m, options_.order);
+}
+
+}  // namespace whirl::models
