@@ -20,16 +20,9 @@ template <class Model>
 class DualProblem : public Problem {
  public:
   DualProblem(Model model, int n, int k, bool flow)
-      : Problem(n, k, flow),
-        model_(std::move(model)),
-        u8_(width()),
-        r8_(height()),
-        u8h_(width()),
-        r8h_(height()),
-        u1_(width()),
-        r1_(height()),
-        u3_(width()),
-        r3_(height()) {}
+      : Problem(n, k, flow), model_(std::move(model)), u8_(width()), r8_(height()), u8h_(width()), r8h_(height()), u3_(width()), r3_(height()) {
+    offer_derivatives(3);
+  }
 
   const Model& model() const { return model_; }
   Model& model() { return model_; }
@@ -96,7 +89,6 @@ class DualProblem : public Problem {
   Model model_;
   mutable std::vector<Slopes> u8_, r8_;
   mutable std::vector<SlopesAlong> u8h_, r8h_;
-  mutable std::vector<Along> u1_, r1_;
   mutable std::vector<Triple> u3_, r3_;
 };
 

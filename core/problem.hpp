@@ -41,6 +41,7 @@ class Problem {
   int size() const { return n_; }
   int parameters() const { return k_; }
   bool is_flow() const { return flow_; }
+  int derivatives() const { return derivatives_; }  ///< highest exact derivative on offer: 1, or 3 where second and third work
   const std::vector<std::string>& parameter_names() const { return names_; }
   const std::vector<Reflection>& reflections() const { return reflections_; }
 
@@ -69,6 +70,7 @@ class Problem {
  protected:
   Problem(int n, int k, bool flow) : n_(n), k_(k), flow_(flow), names_(static_cast<std::size_t>(k), "p") {}
   void name_parameters(std::vector<std::string> names) { names_ = std::move(names); }
+  void offer_derivatives(int order) { derivatives_ = order; }
   void add_reflection(Reflection r) { reflections_.push_back(std::move(r)); }
 
  private:
@@ -83,6 +85,7 @@ class Problem {
 
   int n_, k_;
   bool flow_;
+  int derivatives_ = 1;
   std::vector<std::string> names_;
   std::vector<Reflection> reflections_;
 };

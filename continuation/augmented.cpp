@@ -1,0 +1,330 @@
+#include "continuation/augmented.hpp"
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/QR>
+#include <Eigen/SVD>
+
+namespace whirl::continuation {
+namespace {
+
+Matrix block_of(const Matrix& j, const Indices& rows) {
+  const int m = static_cast<int>(rows.size());
+  Matrix a(m, m);
+  for (int c = 0; c < m; ++c)
+    for (int r = 0; r < m; ++r) a(r, c) = j(rows[std::size_t(r)], rows[std::size_t(c)]);
+  return a;
+}
+
+// v on the block's coordinates, zero elsewhere and in the parameters.
+void embed(In v, const Indices& block, Vector& full) {
+  full.setZero();
+  for (std::size_t i = 0; i < block.size(); ++i) full[block[i]] = v[static_cast<int>(i)];
+}
+
+Indices all_coordinates(const Problem& f) {
+  Indices all(static_cast<std::size_t>(f.size()));
+  for (int i = 0; i < f.size(); ++i) all[static_cast<std::size_t>(i)] = i;
+  return all;
+}
+
+}  // namespace
+
+AugmentedSystem::AugmentedSystem(const Problem& base, Indices state, int extra)
+    : Problem(static_cast<int>(state.size()) + 1 + extra, base.parameters() - 1, false),
+      base_(base),
+      state_(std::move(state)),
+      extra_(extra),
+      column_(static_cast<std::size_t>(base.size() + base.parameters()), -1),
+      u_(Vector::Zero(base.size() + base.parameters())),
+      r_(base.size()),
+      j_(base.size(), base.size() + base.parameters()),
+      h_(base.size(), base.size() + base.parameters()) {
+  if (base.parameters() < 1) throw std::invalid_argument("a system for special points needs at least one free parameter");
+  const int s = static_cast<int>(state_.size());
+  for (int i = 0; i < s; ++i) column_[std::size_t(state_[std::size_t(i)])] = i;
+  column_[std::size_t(base.size())] = s;
+  for (int k = 1; k < base.parameters(); ++k) column_[std::size_t(base.size() + k)] = s + extra + k;
+  if (base.parameters() > 1) name_parameters({base.parameter_names().begin() + 1, base.parameter_names().end()});
+}
+
+Vector AugmentedSystem::base_point(In y) const {
+  spread(y);
+  return u_;
+}
+
+void AugmentedSystem::spread(In y) const {
+  for (int i = 0; i < u_.size(); ++i)
+    if (column(i) >= 0) u_[i] = y[column(i)];
+}
+
+void AugmentedSystem::gather_rows(MatrixIn j, int, MatrixOut out) const {
+  for (int c = 0; c < j.cols(); ++c)
+    if (column(c) >= 0)
+      for (std::size_t r = 0; r < state_.size(); ++r) out(static_cast<int>(r), column(c)) = j(state_[r], c);
+}
+
+// ----------------------------------------------------------------------------------------------------------- SingularSystem
+
+SingularSystem::SingularSystem(const Problem& base, Indices state, Indices block, In u)
+    : AugmentedSystem(base, std::move(state), 0), block_(std::move(block)), full_(base.size() + base.parameters()) {
+  const int m = static_cast<int>(block_.size());
+  bordered_.resize(m + 1, m + 1);
+  b_ = c_ = v_ = w_ = Vector::Zero(m + 1);
+  update_borders(unknowns(u));
+}
+
+Vector SingularSystem::unknowns(In u) const {
+  Vector y(size() + parameters());
+  for (int i = 0; i < u_.size(); ++i)
+    if (column(i) >= 0) y[column(i)] = u[i];
+  return y;
+}
+
+void SingularSystem::update_borders(In y) {
+  spread(y);
+  base_.jacobian(u_, j_);
+  const Eigen::JacobiSVD<Matrix> svd(block_of(j_, block_), Eigen::ComputeFullU | Eigen::ComputeFullV);
+  const int m = static_cast<int>(block_.size());
+  b_.head(m) = svd.matrixU().col(m - 1);
+  c_.head(m) = svd.matrixV().col(m - 1);
+  b_[m] = c_[m] = 0.0;
+}
+
+void SingularSystem::solve_bordered() const {
+  const int m = static_cast<int>(block_.size());
+  bordered_.topLeftCorner(m, m) = block_of(j_, block_);
+  bordered_.col(m) = b_;
+  bordered_.row(m) = c_.transpose();
+  lu_.compute(bordered_);
+  const Vector e = Vector::Unit(m + 1, m);
+  v_ = lu_.solve(e);
+  w_ = lu_.transpose().solve(e);
+}
+
+void SingularSystem::do_residual(In y, Out r) const {
+  spread(y);
+  base_.linearise(u_, r_, j_);
+  solve_bordered();
+  for (std::size_t i = 0; i < state_.size(); ++i) r[static_cast<int>(i)] = r_[state_[i]];
+  r[static_cast<int>(state_.size())] = v_[static_cast<int>(block_.size())];
+}
+
+void SingularSystem::do_jacobian(In y, MatrixOut j) const {
+  spread(y);
+  base_.jacobian(u_, j_);
+  solve_bordered();
+  j.setZero();
+  gather_rows(j_, 0, j);
+  embed(v_.head(static_cast<int>(block_.size())), block_, full_);
+  base_.second(u_, full_, h_);
+  for (int c = 0; c < h_.cols(); ++c)
+    if (column(c) >= 0) {
+      double dg = 0.0;
+      for (std::size_t i = 0; i < block_.size(); ++i) dg -= w_[static_cast<int>(i)] * h_(block_[i], c);
+      j(static_cast<int>(state_.size()), column(c)) = dg;
+    }
+}
+
+Vector SingularSystem::null_vector(In y) const {
+  spread(y);
+  base_.jacobian(u_, j_);
+  solve_bordered();
+  embed(v_.head(static_cast<int>(block_.size())), block_, full_);
+  return full_.head(base_.size()).normalized();
+}
+
+Vector SingularSystem::left_null_vector(In y) const {
+  const Vector v = null_vector(y);
+  embed(w_.head(static_cast<int>(block_.size())), block_, full_);
+  Vector w = full_.head(base_.size()).normalized();
+  const double overlap = w.dot(v);
+  return std::abs(overlap) > 1e-8 ? Vector(w / overlap) : w;
+}
+
+// -------------------------------------------------------------------------------------------------------- BranchPointSystem
+
+BranchPointSystem::BranchPointSystem(const Problem& base, In u)
+    : AugmentedSystem(base, all_coordinates(base), 1), full_(base.size() + base.parameters()) {
+  const int n = base.size();
+  bordered_.resize(n + 2, n + 2);
+  b_.resize(n);
+  c_.resize(n + 1, 2);
+  update_borders(unknowns(u));
+}
+
+Vector BranchPointSystem::unknowns(In u) const {
+  Vector y = Vector::Zero(size() + parameters());
+  for (int i = 0; i < u_.size(); ++i) y[column(i)] = u[i];
+  return y;
+}
+
+void BranchPointSystem::update_borders(In y) {
+  spread(y);
+  base_.jacobian(u_, j_);
+  const int n = base_.size();
+  const Eigen::JacobiSVD<Matrix> svd(j_.leftCols(n + 1), Eigen::ComputeFullU | Eigen::ComputeFullV);
+  b_ = svd.matrixU().col(n - 1);
+  c_ = svd.matrixV().rightCols(2);
+}
+
+void BranchPointSystem::solve_bordered() const {
+  const int n = base_.size();
+  bordered_.setZero();
+  bordered_.topLeftCorner(n, n + 1) = j_.leftCols(n + 1);
+  bordered_.col(n + 1).head(n) = b_;
+  bordered_.bottomLeftCorner(2, n + 1) = c_.transpose();
+  lu_.compute(bordered_);
+  Matrix e = Matrix::Zero(n + 2, 2);
+  e(n, 0) = e(n + 1, 1) = 1.0;
+  v_ = lu_.solve(e);
+  w_ = lu_.transpose().solve(Vector(Vector::Unit(n + 2, n + 1)));
+}
+
+void BranchPointSystem::do_residual(In y, Out r) const {
+  spread(y);
+  base_.linearise(u_, r_, j_);
+  solve_bordered();
+  const int n = base_.size();
+  r.head(n) = r_ + y[n + 1] * b_;
+  r[n] = v_(n + 1, 0);
+  r[n + 1] = v_(n + 1, 1);
+}
+
+void BranchPointSystem::do_jacobian(In y, MatrixOut j) const {
+  spread(y);
+  base_.jacobian(u_, j_);
+  solve_bordered();
+  const int n = base_.size();
+  j.setZero();
+  gather_rows(j_, 1, j);
+  j.col(n + 1).head(n) = b_;
+  for (int i = 0; i < 2; ++i) {
+    full_.setZero();
+    full_.head(n + 1) = v_.col(i).head(n + 1);
+    base_.second(u_, full_, h_);
+    for (int c = 0; c < h_.cols(); ++c) j(n + i, column(c)) = -w_.head(n).dot(h_.col(c));
+  }
+}
+
+Matrix BranchPointSystem::null_space(In y) const {
+  spread(y);
+  base_.jacobian(u_, j_);
+  const int n = base_.size();
+  return Eigen::JacobiSVD<Matrix>(j_.leftCols(n + 1), Eigen::ComputeFullV).matrixV().rightCols(2);
+}
+
+Vector BranchPointSystem::left_null_vector(In y) const {
+  spread(y);
+  base_.jacobian(u_, j_);
+  solve_bordered();
+  return w_.head(base_.size()).normalized();
+}
+
+// --------------------------------------------------------------------------------------------------------------- HopfSystem
+
+HopfSystem::HopfSystem(const Problem& base, Indices state, Indices block, In u)
+    : AugmentedSystem(base, std::move(state), 1), block_(std::move(block)), full_(base.size() + base.parameters()) {
+  const int m = static_cast<int>(block_.size());
+  bordered_.resize(m + 2, m + 2);
+  for (int i = 0; i < u_.size(); ++i)
+    if (column(i) >= 0) u_[i] = u[i];
+  base_.jacobian(u_, j_);
+  // Of the complex pairs, the one nearest the imaginary axis.
+  const Eigen::EigenSolver<Matrix> solver(block_of(j_, block_), false);
+  double nearest = std::numeric_limits<double>::infinity();
+  for (const auto& z : solver.eigenvalues())
+    if (z.imag() > 0.0 && std::abs(z.real()) < nearest) {
+      nearest = std::abs(z.real());
+      kappa0_ = z.imag() * z.imag();
+    }
+  const Vector start = unknowns(u);
+  update_borders(start);
+}
+
+Vector HopfSystem::unknowns(In u) const {
+  Vector y(size() + parameters());
+  for (int i = 0; i < u_.size(); ++i)
+    if (column(i) >= 0) y[column(i)] = u[i];
+  y[static_cast<int>(state_.size()) + 1] = kappa0_;
+  return y;
+}
+
+void HopfSystem::update_borders(In y) {
+  spread(y);
+  base_.jacobian(u_, j_);
+  const int m = static_cast<int>(block_.size());
+  const Matrix a = block_of(j_, block_), q = a * a + kappa(y) * Matrix::Identity(m, m);
+  const Eigen::JacobiSVD<Matrix> svd(q, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  left_ = svd.matrixU().rightCols(2);
+  right_ = svd.matrixV().rightCols(2);
+  choose_entries(y);
+}
+
+// Of the four entries of G, two whose gradients are the least parallel.
+void HopfSystem::choose_entries(In y) {
+  Matrix four = Matrix::Zero(4, size() + parameters());
+  gradients(y, four);
+  const Eigen::ColPivHouseholderQR<Matrix> qr(four.transpose());
+  entry_[0] = qr.colsPermutation().indices()[0];
+  entry_[1] = qr.colsPermutation().indices()[1];
+}
+
+void HopfSystem::solve_bordered(double kappa) const {
+  const int m = static_cast<int>(block_.size());
+  a_ = block_of(j_, block_);
+  bordered_.setZero();
+  bordered_.topLeftCorner(m, m) = a_ * a_;
+  for (int i = 0; i < m; ++i) bordered_(i, i) += kappa;
+  bordered_.topRightCorner(m, 2) = left_;
+  bordered_.bottomLeftCorner(2, m) = right_.transpose();
+  lu_.compute(bordered_);
+  Matrix e = Matrix::Zero(m + 2, 2);
+  e(m, 0) = e(m + 1, 1) = 1.0;
+  x_ = lu_.solve(e);
+  y_ = lu_.transpose().solve(e);
+  g_ = x_.bottomRows(2);
+}
+
+void HopfSystem::do_residual(In y, Out r) const {
+  spread(y);
+  base_.linearise(u_, r_, j_);
+  solve_bordered(kappa(y));
+  const int s = static_cast<int>(state_.size());
+  for (int i = 0; i < s; ++i) r[i] = r_[state_[std::size_t(i)]];
+  for (int e = 0; e < 2; ++e) r[s + e] = g_(entry_[e] % 2, entry_[e] / 2);
+}
+
+// dG_ij = -Y_i' (dA A + A dA + dkappa) X_j
+void HopfSystem::gradients(In y, MatrixOut four) const {
+  spread(y);
+  base_.jacobian(u_, j_);
+  solve_bordered(kappa(y));
+  const int m = static_cast<int>(block_.size()), s = static_cast<int>(state_.size());
+  const Matrix X = x_.topRows(m), Y = y_.topRows(m), AX = a_ * X, AtY = a_.transpose() * Y;
+  four.setZero();
+  for (int jx = 0; jx < 2; ++jx)
+    for (int pass = 0; pass < 2; ++pass) {  // dA (A X_j) against Y_i, dA X_j against A'Y_i
+      embed(pass == 0 ? AX.col(jx) : X.col(jx), block_, full_);
+      base_.second(u_, full_, h_);
+      for (int i = 0; i < 2; ++i)
+        for (int c = 0; c < h_.cols(); ++c)
+          if (column(c) >= 0) {
+            double dg = 0.0;
+            for (int k = 0; k < m; ++k) dg -= (pass == 0 ? Y(k, i) : AtY(k, i)) * h_(block_[std::size_t(k)], c);
+            four(i + 2 * jx, column(c)) += dg;
+          }
+    }
+  for (int jx = 0; jx < 2; ++jx)
+    for (int i = 0; i < 2; ++i) four(i + 2 * jx, s + 1) = -Y.col(i).dot(X.col(jx));
+}
+
+void HopfSystem::do_jacobian(In y, MatrixOut j) const {
+  Matrix four(4, size() + parameters());
+  gradients(y, four);
+  j.setZero();
+  gather_rows(j_, 1, j);
+  const int s = static_cast<int>(state_.size());
+  for (int e = 0; e < 2; ++e) j.row(s + e) = four.row(entry_[e]);
+}
+
+}  // namespace whirl::continuation

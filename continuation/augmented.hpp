@@ -1,0 +1,114 @@
+#pragma once
+/// Systems that define special points, themselves Problems: Newton locates a point, the walker follows a curve of them.
+/// All derivatives are exact (`Problem::second` of the base). A base with k parameters gives a system with k - 1.
+///
+/// SingularSystem, fold or symmetry-breaking point. A = r_x on the rows and columns of block M, x on the coordinates S, else zero:
+///
+///     r_S(x, p) = 0,  g(x, p) = 0      [ A   b ] [v]   [0]      dg = -w' D2r[v, .]
+///                                      [ c'  0 ] [g] = [1]
+///   M = S: fold (or any singular r_x along x); M a block of odd coordinates: pitchfork. Unknowns (x_S, p1 | p2 ...).
+///
+/// BranchPointSystem, simple branch point without symmetry: [r_x r_p1] loses rank.
+///
+///     r(x, p) + beta b0 = 0,  g1 = g2 = 0      [ J   b ] [V]   [0]      dg_i = -w' D2r[v_i, .]
+///                                              [ C'  0 ] [g] = [I]
+///   Unknowns (x, p1, beta | p2 ...); beta = 0 at a branch point that persists.
+///
+/// HopfSystem: A^2 + kappa I loses rank two; kappa = (frequency)^2 > 0 Hopf, < 0 neutral saddle, = 0 Bogdanov-Takens (regular).
+///
+///     r_S(x, p) = 0,  two entries of G = 0     [ A^2 + kappa I   W ] [X]   [0]
+///                                              [ V'              0 ] [G] = [I]
+///   Unknowns (x_S, p1, kappa | p2 ...).
+
+#include <Eigen/LU>
+
+#include "continuation/blocks.hpp"
+
+namespace whirl::continuation {
+
+/// Shared by the three: where the base's unknowns stand in the system's.
+class AugmentedSystem : public Problem {
+ public:
+  /// The base's u = (x, p) behind the system's unknowns.
+  Vector base_point(In y) const;
+  /// The system's unknowns for the base point u (extra unknowns as given).
+  virtual Vector unknowns(In u) const = 0;
+  /// Recomputes the borders at y; keeps the bordered matrices well conditioned along a curve.
+  virtual void update_borders(In y) = 0;
+  const Problem& base() const { return base_; }
+
+ protected:
+  AugmentedSystem(const Problem& base, Indices state, int extra);
+  void spread(In y) const;                                       // y -> u_
+  void gather_rows(MatrixIn j, int extra, MatrixOut out) const;  // [J_SS | J_Sp] into the system's columns
+  int column(int base_column) const { return column_[static_cast<std::size_t>(base_column)]; }
+
+  const Problem& base_;
+  Indices state_;            // S
+  int extra_;                // scalar unknowns beyond x_S and p1
+  std::vector<int> column_;  // base column -> system column, -1 outside S
+  mutable Vector u_, r_;
+  mutable Matrix j_, h_;
+};
+
+class SingularSystem : public AugmentedSystem {
+ public:
+  SingularSystem(const Problem& base, Indices state, Indices block, In u);
+  Vector unknowns(In u) const override;
+  void update_borders(In y) override;
+  Vector null_vector(In y) const;       ///< v, size n, unit length
+  Vector left_null_vector(In y) const;  ///< w, size n, w'v = 1 where possible, else unit length
+
+ private:
+  void do_residual(In y, Out r) const override;
+  void do_jacobian(In y, MatrixOut j) const override;
+  void solve_bordered() const;
+  Indices block_;  // M
+  Vector b_, c_;
+  mutable Matrix bordered_;
+  mutable Eigen::PartialPivLU<Matrix> lu_;
+  mutable Vector v_, w_, full_;
+};
+
+class BranchPointSystem : public AugmentedSystem {
+ public:
+  BranchPointSystem(const Problem& base, In u);
+  Vector unknowns(In u) const override;
+  void update_borders(In y) override;
+  Matrix null_space(In y) const;        ///< two columns spanning ker [r_x r_p1], size n + 1
+  Vector left_null_vector(In y) const;  ///< size n, unit length
+
+ private:
+  void do_residual(In y, Out r) const override;
+  void do_jacobian(In y, MatrixOut j) const override;
+  void solve_bordered() const;
+  Vector b_;
+  Matrix c_;
+  mutable Matrix bordered_, v_;
+  mutable Eigen::PartialPivLU<Matrix> lu_;
+  mutable Vector w_, full_;
+};
+
+class HopfSystem : public AugmentedSystem {
+ public:
+  HopfSystem(const Problem& base, Indices state, Indices block, In u);
+  Vector unknowns(In u) const override;
+  void update_borders(In y) override;
+  double kappa(In y) const { return y[static_cast<int>(state_.size()) + 1]; }
+
+ private:
+  void do_residual(In y, Out r) const override;
+  void do_jacobian(In y, MatrixOut j) const override;
+  void solve_bordered(double kappa) const;
+  void choose_entries(In y);
+  void gradients(In y, MatrixOut four) const;  // rows dG00, dG10, dG01, dG11
+  Indices block_;
+  Matrix left_, right_;  // W, V
+  double kappa0_ = 0.0;
+  int entry_[2] = {0, 1};
+  mutable Matrix a_, bordered_, x_, y_, g_;
+  mutable Eigen::PartialPivLU<Matrix> lu_;
+  mutable Vector full_;
+};
+
+}  // namespace whirl::continuation

@@ -1,0 +1,103 @@
+#pragma once
+/// What a walk leaves behind: points in columns, special points, and why it ended. Plain values; nothing here computes.
+
+#include <complex>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "core/problem.hpp"
+
+namespace whirl::continuation {
+
+/// Special points, in the field's letters.
+enum class EventType {
+  fold,          ///< LP
+  branch_point,  ///< BP; subtype says which ("WH" where a reflection breaks into whirling, "PF" pitchfork, "TC" transcritical)
+  hopf,          ///< HB
+  end,           ///< EP
+  gave_up,       ///< MX
+  user_value,    ///< UZ
+  peak,          ///< RP, an observable has an extremum
+  unresolved     ///< a change in the number of unstable directions that no located event explains
+};
+const char* to_string(EventType type);
+
+enum class StopReason {
+  parameter_bound,     ///< reached lower or upper end of the parameter range, exactly
+  closed_loop,         ///< came back to its first point
+  symmetric_branch,    ///< reached a branch point on a symmetric branch; the rest is the mirror image
+  known_branch_point,  ///< started at a branch point
+  max_points,
+  min_step,  ///< the corrector failed at the smallest step
+  observer,  ///< the observer asked to stop
+  none
+};
+const char* to_string(StopReason reason);
+
+struct SpecialPoint {
+  EventType type = EventType::end;
+  std::string subtype;
+  Vector u;                  ///< (x, p), size n + 1
+  Vector tangent;            ///< of the branch, same size
+  Vector null_vector;        ///< of r_x where singular (Hopf: real part), size n, else empty
+  Vector null_vector_im;     ///< Hopf: imaginary part
+  double frequency = 0.0;    ///< Hopf: imaginary part of the critical eigenvalue
+  double coefficient = 0.0;  ///< normal-form coefficient: fold quadratic, pitchfork cubic, Hopf first Lyapunov; see normal_form.hpp
+  bool has_coefficient = false;
+  double residual = 0.0;           ///< of the defining system, largest entry
+  double bracket[2] = {0.0, 0.0};  ///< parameter values on the branch between which the test function changes
+  double arclength = 0.0;
+  int unstable_before = 0, unstable_after = 0;  ///< along the walk
+  int block = 0;                                ///< symmetry block in which r_x is singular; 0 is the block of the motion itself
+  bool stable_before() const { return unstable_before == 0; }
+  bool stable_after() const { return unstable_after == 0; }
+};
+
+/// Points of one branch. Storage for `capacity` points is taken in the constructor, none later.
+class Branch {
+ public:
+  Branch() = default;
+  Branch(int n, bool with_spectrum, int capacity);
+
+  int points() const { return points_; }
+  int capacity() const { return static_cast<int>(arclength_.size()); }
+  int size() const { return static_cast<int>(u_.rows()) - 1; }
+  bool has_spectrum() const { return eigenvalues_.rows() > 0; }
+
+  auto u(int i) const { return u_.col(i); }
+  auto tangent(int i) const { return tangent_.col(i); }
+  double parameter(int i) const { return u_(u_.rows() - 1, i); }
+  auto eigenvalues(int i) const { return eigenvalues_.col(i); }
+  double arclength(int i) const { return arclength_[i]; }
+  double residual(int i) const { return residual_[i]; }
+  double step(int i) const { return step_[i]; }
+  int iterations(int i) const { return iterations_[i]; }
+  int n_unstable(int i) const { return unstable_[i]; }
+
+  void append(In u, In tangent, double arclength, double residual, double step, int iterations, int unstable, const Eigen::VectorXcd* eigenvalues);
+  void clear() {
+    points_ = 0;
+    special.clear();
+  }
+
+  /// This branch walked the other way: order of points and sense of tangents reversed.
+  Branch reversed() const;
+  /// `backward` (walked away from the common first point) followed by `forward`.
+  static Branch joined(const Branch& backward, const Branch& forward);
+
+  std::vector<SpecialPoint> special;  ///< in order of arclength
+  StopReason start_reason = StopReason::none, stop_reason = StopReason::none;
+  std::string name;
+  std::string born_at;                  ///< "start", "seed", or the label of the branch point it leaves from
+  std::vector<int> active_reflections;  ///< reflections of the problem that leave every point of this branch in place
+
+ private:
+  Matrix u_, tangent_;
+  Eigen::MatrixXcd eigenvalues_;
+  Vector arclength_, residual_, step_;
+  Eigen::VectorXi iterations_, unstable_;
+  int points_ = 0;
+};
+
+}  // namespace whirl::continuation

@@ -1,0 +1,133 @@
+#include "continuation/curve.hpp"
+
+namespace whirl::continuation {
+namespace {
+
+bool negative_determinant(const Eigen::PartialPivLU<Matrix>& lu) {
+  bool negative = lu.permutationP().determinant() < 0;
+  for (int i = 0; i < lu.matrixLU().rows(); ++i) negative ^= lu.matrixLU()(i, i) < 0.0;
+  return negative;
+}
+
+}  // namespace
+
+Curve::Curve(const Problem& f, Blocks blocks, const CurveOptions& options)
+    : f_(f),
+      blocks_(std::move(blocks)),
+      options_(options),
+      spectrum_(blocks_),
+      weight_(Vector::Ones(f.size() + 1)),
+      r_(f.size()),
+      step_(f.size() + 1),
+      rhs_(f.size() + 1),
+      jacobian_(f.size(), f.size() + 1),
+      bordered_(f.size() + 1, f.size() + 1),
+      lu_(f.size() + 1) {
+  if (f.parameters() != 1) throw std::invalid_argument("a curve needs exactly one free parameter");
+  if (blocks_.indices.size() > Signature::max_blocks) throw std::invalid_argument("more than 8 symmetry blocks");
+  for (const auto& indices : blocks_.indices) {
+    const auto m = static_cast<Eigen::Index>(indices.size());
+    block_.emplace_back(m, m);
+    block_lu_.emplace_back(m);
+  }
+}
+
+void Curve::set_scales(double x_scale, double p_scale) {
+  x_scale_ = x_scale;
+  p_scale_ = p_scale;
+  weight_.setConstant(1.0 / (x_scale * x_scale));
+  weight_[f_.size()] = 1.0 / (p_scale * p_scale);
+}
+
+Curve::Report Curve::correct(Out u, In normal, In anchor) {
+  const int n = f_.size();
+  Report report;
+  double previous = 0.0;
+  bool last = false;
+  for (;;) {
+    f_.linearise(u, r_, jacobian_);
+    report.residual = r_.lpNorm<Eigen::Infinity>();
+    if (!std::isfinite(report.residual) || !jacobian_.allFinite()) return report;
+    bordered_.topRows(n) = jacobian_;
+    bordered_.row(n) = (normal.array() * weight_.array()).transpose();
+    lu_.compute(bordered_);
+    if (last) {
+      report.ok = true;
+      return report;
+    }
+    if (report.iterations == options_.max_iterations) return report;
+    rhs_.head(n) = -r_;
+    rhs_[n] = -((u - anchor).array() * normal.array() * weight_.array()).sum();
+    step_ = lu_.solve(rhs_);
+    const double size = length(step_);
+    if (!std::isfinite(size)) return report;
+    u += step_;
+    ++report.iterations;
+    if (report.iterations == 1) report.first_step = size;
+    if (report.iterations == 2) report.contraction = size / previous;
+    if (report.iterations > 1 && size > 2.0 * previous && size > 1e3 * options_.tolerance) return report;
+    // Newton squares the error: the step after this one would be about size^2 times (size / previous^2).
+    const double predicted = report.iterations == 1 ? size : size * size * std::min(size / (previous * previous), 1e3);
+    last = predicted < options_.tolerance;
+    previous = size;
+  }
+}
+
+bool Curve::complete(In u, In normal, Out tangent, Signature& signature) {
+  (void)u;
+  (void)normal;
+  const int n = f_.size();
+  rhs_.setZero();
+  rhs_[n] = 1.0;
+  tangent = lu_.solve(rhs_);
+  const double size = length(tangent);
+  if (!std::isfinite(size) || size == 0.0) return false;
+  tangent /= size;
+  signature.forward = tangent[n] > 0.0;
+  if (f_.is_flow()) {
+    if (!spectrum_.compute(jacobian_)) return false;
+    for (int k = 0; k < static_cast<int>(blocks_.indices.size()); ++k) {
+      const auto slot = static_cast<std::size_t>(k);
+      signature.unstable[slot] = spectrum_.unstable(k);
+      signature.negative[slot] = (blocks_.indices[slot].size() - static_cast<std::size_t>(signature.unstable[slot])) % 2 == 1;
+    }
+    return true;
+  }
+  // det r_x = t_p det [J; t'], and the determinants of the odd blocks divide out.
+  bool all = negative_determinant(lu_) ^ (tangent[n] < 0.0);
+  for (std::size_t k = 1; k < blocks_.indices.size(); ++k) {
+    const auto& indices = blocks_.indices[k];
+    for (std::size_t c = 0; c < indices.size(); ++c)
+      for (std::size_t r = 0; r < indices.size(); ++r) block_[k](static_cast<int>(r), static_cast<int>(c)) = jacobian_(indices[r], indices[c]);
+    block_lu_[k].compute(block_[k]);
+    signature.negative[k] = negative_determinant(block_lu_[k]);
+    all ^= signature.negative[k];
+  }
+  signature.negative[0] = all;
+  return true;
+}
+
+bool Curve::sample(In guess, In normal, Sample& out) {
+  out.u = guess;
+  const Report report = correct(out.u, normal, guess);
+  out.tangent.resize(f_.size() + 1);
+  if (!report.ok || !complete(out.u, normal, out.tangent, out.signature)) return false;
+  out.residual = report.residual;
+  out.iterations = report.iterations;
+  if (f_.is_flow())
+    for (int k = 0; k < static_cast<int>(blocks_.indices.size()); ++k) out.lead[static_cast<std::size_t>(k)] = spectrum_.lead(k);
+  return true;
+}
+
+bool Curve::between(const Sample& a, const Sample& b, double sigma, Sample& out) {
+  // Cubic Hermite through both ends; the plane is normal to the chord.
+  const Vector chord = b.u - a.u;
+  const double h = length(chord), s = sigma, s2 = s * s, s3 = s2 * s;
+  const Vector guess =
+      (2.0 * s3 - 3.0 * s2 + 1.0) * a.u + (s3 - 2.0 * s2 + s) * h * a.tangent + (3.0 * s2 - 2.0 * s3) * b.u + (s3 - s2) * h * b.tangent;
+  // Back into the plane at fraction sigma, so that fractions mean what they say.
+  const double shift = sigma - dot(chord, guess - a.u) / (h * h);
+  return sample(guess + shift * chord, chord, out);
+}
+
+}  // namespace whirl::continuation

@@ -1,0 +1,86 @@
+#pragma once
+/// One solution curve of r(x, p) = 0: the corrector, the tangent and the signature of a point. No step control, no events.
+///
+///     [ r_x  r_p ] [du]   [ -r              ]          [ J  ]     [0]
+///     [   c' W   ]        [ -c'W (u - anchor)]         [c'W ] t = [1],  t normalised in the metric W
+///
+/// W is diagonal: lengths are measured in units of the parameter range and of the size of x, so that steps need no tuning.
+
+#include <Eigen/LU>
+#include <array>
+
+#include "continuation/spectrum.hpp"
+
+namespace whirl::continuation {
+
+/// What can change at a special point: the sense of the parameter, and per block the number of unstable directions and the sign of det r_x.
+struct Signature {
+  static constexpr int max_blocks = 8;
+  bool forward = true;  ///< parameter increases along the tangent
+  std::array<int, max_blocks> unstable{};
+  std::array<bool, max_blocks> negative{};  ///< det of the block < 0
+  bool operator==(const Signature&) const = default;
+};
+
+struct Sample {
+  Vector u, tangent;
+  Signature signature;
+  double residual = 0.0;
+  int iterations = 0;
+  std::array<double, Signature::max_blocks> lead{};  ///< per block, real part nearest zero (0 if not a flow)
+};
+
+struct CurveOptions {
+  double tolerance = 1e-11;  ///< on the predicted size of the next Newton step, in the metric
+  int max_iterations = 8;
+};
+
+class Curve {
+ public:
+  struct Report {
+    bool ok = false;
+    int iterations = 0;
+    double first_step = 0.0;   ///< length of the first correction
+    double contraction = 0.0;  ///< second over first
+    double residual = 0.0;
+  };
+
+  Curve(const Problem& f, Blocks blocks, const CurveOptions& options);
+  Curve(const Curve&) = delete;
+
+  const Problem& problem() const { return f_; }
+  const Blocks& blocks() const { return blocks_; }
+
+  /// Metric: x in units of x_scale, p in units of p_scale.
+  void set_scales(double x_scale, double p_scale);
+  double x_scale() const { return x_scale_; }
+  double dot(In a, In b) const { return (a.array() * weight_.array() * b.array()).sum(); }
+  double length(In a) const { return std::sqrt(dot(a, a)); }
+
+  /// Newton onto the curve within the plane through `anchor` normal to `normal`. On success the Jacobian at u is kept for `complete`.
+  Report correct(Out u, In normal, In anchor);
+  /// Tangent (positive along `normal`), eigenvalues and signature at the point just corrected. False if singular or non-finite.
+  bool complete(In u, In normal, Out tangent, Signature& signature);
+
+  const Spectrum& spectrum() const { return spectrum_; }
+  const Matrix& jacobian() const { return jacobian_; }
+
+  /// Corrected and completed point near `guess`, in the plane through it normal to `normal`.
+  bool sample(In guess, In normal, Sample& out);
+  /// Point between two samples, at fraction sigma of the chord.
+  bool between(const Sample& a, const Sample& b, double sigma, Sample& out);
+
+ private:
+  const Problem& f_;
+  Blocks blocks_;
+  CurveOptions options_;
+  Spectrum spectrum_;
+  Vector weight_, r_, step_, rhs_;
+  Matrix jacobian_, bordered_;
+  Eigen::PartialPivLU<Matrix> lu_;
+  std::vector<Matrix> block_;
+  std::vector<Eigen::PartialPivLU<Matrix>> block_lu_;
+  double x_scale_ = 1.0, p_scale_ = 1.0;
+};
+
+}  // namespace whirl::continuation

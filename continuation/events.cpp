@@ -1,0 +1,278 @@
+#include "continuation/events.hpp"
+
+#include <algorithm>
+#include <memory>
+
+#include "continuation/augmented.hpp"
+#include "core/newton.hpp"
+
+namespace whirl::continuation {
+namespace {
+
+double fraction(const Curve& curve, const Sample& a, const Sample& b, In u) {
+  const Vector chord = b.u - a.u;
+  return curve.dot(chord, u - a.u) / curve.dot(chord, chord);
+}
+
+Indices block_or_empty(const Blocks& blocks, int k) { return blocks.indices[static_cast<std::size_t>(k)]; }
+
+}  // namespace
+
+int EventFinder::total_unstable(const Signature& s) const {
+  int sum = 0;
+  for (int count : s.unstable) sum += count;
+  return sum;
+}
+
+std::vector<EventFinder::Kind> EventFinder::changes(const Signature& a, const Signature& b) const {
+  std::vector<Kind> kinds;
+  const bool fold = a.forward != b.forward;
+  if (fold) kinds.push_back({EventType::fold, 0});
+  for (int k = 0; k < static_cast<int>(curve_.blocks().indices.size()); ++k) {
+    const auto slot = static_cast<std::size_t>(k);
+    const bool turned = a.negative[slot] != b.negative[slot];
+    if (k == 0 ? turned != fold : turned) kinds.push_back({EventType::branch_point, k});
+    const int pairs = (std::abs(b.unstable[slot] - a.unstable[slot]) - (turned ? 1 : 0)) / 2;
+    if (pairs > 0) kinds.push_back({EventType::hopf, k});
+  }
+  return kinds;
+}
+
+std::vector<SpecialPoint> EventFinder::find(const Sample& before, const Sample& a, const Sample& b) {
+  found_.clear();
+  if (!changes(a.signature, b.signature).empty()) explain(a, b, 0);
+  else look_closer(before, a, b, 0);
+  std::sort(found_.begin(), found_.end(), [&](const auto& p, const auto& q) { return fraction(curve_, a, b, p.u) < fraction(curve_, a, b, q.u); });
+  return found_;
+}
+
+void EventFinder::explain(const Sample& a, const Sample& b, int depth) {
+  const auto kinds = changes(a.signature, b.signature);
+  if (kinds.empty()) return;
+  for (const auto& kind : kinds) {
+    SpecialPoint point;
+    if (locate(kind, a, b, point) && accept(kind, a, b, point, depth)) return;
+  }
+  Sample middle;
+  if (depth < options_.max_depth && curve_.between(a, b, 0.5, middle)) {
+    explain(a, middle, depth + 1);
+    explain(middle, b, depth + 1);
+    return;
+  }
+  report_unresolved(a, b);
+}
+
+void EventFinder::report_unresolved(const Sample& a, const Sample& b) {
+  SpecialPoint p;
+  p.type = EventType::unresolved;
+  p.u = 0.5 * (a.u + b.u);
+  p.tangent = a.tangent;
+  p.residual = std::max(a.residual, b.residual);
+  p.bracket[0] = std::min(a.u[a.u.size() - 1], b.u[b.u.size() - 1]);
+  p.bracket[1] = std::max(a.u[a.u.size() - 1], b.u[b.u.size() - 1]);
+  p.unstable_before = total_unstable(a.signature);
+  p.unstable_after = total_unstable(b.signature);
+  found_.push_back(p);
+}
+
+void EventFinder::look_closer(const Sample& before, const Sample& a, const Sample& b, int depth) {
+  if (depth >= options_.suspicion_depth) return;
+  const int n = curve_.problem().size();
+  // Something that may touch zero and return: nearer to zero than it moved lately.
+  const auto suspicious = [](double past, double from, double to) {
+    const double moved = std::max(std::abs(from - past), std::abs(to - from));
+    return std::min(std::abs(from), std::abs(to)) < moved && from * to > 0.0;
+  };
+  bool near = suspicious(before.tangent[n], a.tangent[n], b.tangent[n]);
+  for (std::size_t k = 0; k < curve_.blocks().indices.size(); ++k) near = near || suspicious(before.lead[k], a.lead[k], b.lead[k]);
+  Sample middle;
+  if (!near || !curve_.between(a, b, 0.5, middle)) return;
+  if (changes(a.signature, middle.signature).empty()) {
+    look_closer(before, a, middle, depth + 1);
+    look_closer(a, middle, b, depth + 1);
+  } else {
+    explain(a, middle, depth + 1);
+    explain(middle, b, depth + 1);
+  }
+}
+
+// Newton from the secant guess, else from ever narrower brackets.
+bool EventFinder::locate(const Kind& kind, const Sample& a, const Sample& b, SpecialPoint& out) {
+  const auto inside = [&](const SpecialPoint& p) {
+    const double s = fraction(curve_, a, b, p.u), chord = curve_.length(b.u - a.u);
+    return s > -1e-6 && s < 1.0 + 1e-6 && curve_.length(p.u - (a.u + s * (b.u - a.u))) < 0.5 * chord + 1e-12;
+  };
+  const auto test = [&](const Sample& s) {
+    return kind.type == EventType::fold ? s.tangent[curve_.problem().size()] : s.lead[static_cast<std::size_t>(kind.block)];
+  };
+  const auto has = [&](const Signature& s, const Signature& t) {
+    const auto list = changes(s, t);
+    return std::any_of(list.begin(), list.end(), [&](const Kind& k) { return k.type == kind.type && k.block == kind.block; });
+  };
+  Sample lo = a, hi = b, middle;
+  double from = 0.0, to = 1.0;
+  for (int i = 0; i < 48; ++i) {
+    const double f = test(lo), g = test(hi);
+    double part = f * g < 0.0 ? f / (f - g) : 0.5;
+    if (i % 3 == 2) part = 0.5;
+    part = std::clamp(part, 0.05, 0.95);
+    const double sigma = from + part * (to - from);
+    if (!curve_.between(a, b, sigma, middle)) return false;
+    if (curve_.problem().derivatives() >= 2 && (i < 3 || i % 6 == 0) && solve(kind, middle, out) && inside(out)) return true;
+    if (has(lo.signature, middle.signature)) {
+      hi = middle;
+      to = sigma;
+    } else {
+      lo = middle;
+      from = sigma;
+    }
+    const double width = curve_.length(hi.u - lo.u);
+    if (width < 1e-13 || to - from < 1e-13) break;
+  }
+  if (curve_.problem().derivatives() >= 2) return false;
+  // No second derivatives on offer: the narrowed bracket is the answer.
+  out = {};
+  out.type = kind.type;
+  out.block = kind.block;
+  out.u = middle.u;
+  out.tangent = middle.tangent;
+  out.residual = middle.residual;
+  return true;
+}
+
+bool EventFinder::solve(const Kind& kind, const Sample& near, SpecialPoint& out) {
+  const Problem& f = curve_.problem();
+  const Blocks& blocks = curve_.blocks();
+  const Indices state = block_or_empty(blocks, 0), block = block_or_empty(blocks, kind.block);
+  std::unique_ptr<AugmentedSystem> system;
+  switch (kind.type) {
+    case EventType::fold:
+      system = std::make_unique<SingularSystem>(f, state, state, near.u);
+      break;
+    case EventType::branch_point:
+      if (kind.block > 0) system = std::make_unique<SingularSystem>(f, state, block, near.u);
+      else if (blocks.indices.size() == 1) system = std::make_unique<BranchPointSystem>(f, near.u);
+      else return false;
+      break;
+    case EventType::hopf:
+      system = std::make_unique<HopfSystem>(f, state, block, near.u);
+      break;
+    case EventType::end:
+    case EventType::gave_up:
+    case EventType::user_value:
+    case EventType::peak:
+    case EventType::unresolved:
+      return false;
+  }
+  const Vector start = system->unknowns(near.u);
+  if (!start.allFinite()) return false;
+  NewtonResult r = newton(*system, start, {.tolerance = 1e-13, .max_iterations = 12});
+  // At rounding level Newton may wander without meeting 1e-13: a tiny residual and a tiny last step count.
+  if (!r.ok() && !(r.outcome == Outcome::stalled && r.residual < 1e-12)) return false;
+  if (kind.type == EventType::hopf && !(static_cast<HopfSystem&>(*system).kappa(r.x) > 0.0)) return false;
+  out = {};
+  out.type = kind.type;
+  out.block = kind.block;
+  out.u = system->base_point(r.x);
+  out.tangent = near.tangent;
+  out.residual = r.residual;
+  out.subtype = kind.type == EventType::branch_point ? blocks.subtype[static_cast<std::size_t>(kind.block)] : "";
+  if (auto* singular = dynamic_cast<SingularSystem*>(system.get())) out.null_vector = singular->null_vector(r.x);
+  if (kind.type == EventType::hopf) out.frequency = std::sqrt(static_cast<HopfSystem&>(*system).kappa(r.x));
+  return true;
+}
+
+// The event splits the step: signatures just before and behind it must show it, and what remains on either side is explained in turn.
+bool EventFinder::accept(const Kind& kind, const Sample& a, const Sample& b, SpecialPoint& point, int depth) {
+  for (const auto& known : found_)
+    if (known.type == point.type && known.block == point.block && curve_.length(known.u - point.u) < 1e-9) return false;
+  const Vector chord = (b.u - a.u).normalized();
+  const double unit = curve_.length(chord), span = curve_.length(b.u - a.u);
+  for (double delta = std::min(1e-6, 0.01 * span); delta < 0.5 * span; delta *= 10.0) {
+    Sample left, right;
+    const Vector offset = (delta / unit) * chord;
+    if (!curve_.sample(point.u - offset, chord, left) || !curve_.sample(point.u + offset, chord, right)) continue;
+    const auto shown = changes(left.signature, right.signature);
+    const auto same = [&](const Kind& k) { return k.type == kind.type && k.block == kind.block; };
+    if (std::none_of(shown.begin(), shown.end(), same)) continue;
+    point.unstable_before = total_unstable(left.signature);
+    point.unstable_after = total_unstable(right.signature);
+    // On a fold both sides lie on one side of it: the parameter itself closes the bracket.
+    const double at = point.u[point.u.size() - 1], p = left.u[left.u.size() - 1], q = right.u[right.u.size() - 1];
+    point.bracket[0] = std::min({at, p, q});
+    point.bracket[1] = std::max({at, p, q});
+    if (kind.type == EventType::fold) {
+      point.tangent = (right.u - left.u) / curve_.length(right.u - left.u);
+    } else {
+      point.tangent = left.tangent;
+    }
+    found_.push_back(point);
+    for (const auto& other : shown) {  // coincident with another kind: each has its own regular system
+      SpecialPoint second;
+      if (same(other)) continue;
+      if (solve(other, left, second) && curve_.length(second.u - point.u) < 2.0 * delta) {
+        second.unstable_before = point.unstable_before;
+        second.unstable_after = point.unstable_after;
+        second.bracket[0] = point.bracket[0];
+        second.bracket[1] = point.bracket[1];
+        second.tangent = point.tangent;
+        found_.push_back(second);
+      } else {
+        report_unresolved(left, right);
+      }
+    }
+    explain(a, left, depth + 1);
+    explain(right, b, depth + 1);
+    return true;
+  }
+  return false;
+}
+
+bool EventFinder::mirror_crossing(const Sample& a, const Sample& b, int r, SpecialPoint& out) {
+  const Problem& f = curve_.problem();
+  const Indices odd = odd_coordinates(f, r);
+  double product = 0.0, size = 0.0;
+  for (int i : odd) {
+    product += a.u[i] * b.u[i];
+    size = std::max({size, std::abs(a.u[i]), std::abs(b.u[i])});
+  }
+  if (!(product < 0.0) || size == 0.0) return false;
+  // Where the odd part passes zero on the chord, made exactly symmetric.
+  double na = 0.0, nb = 0.0;
+  for (int i : odd) {
+    na += a.u[i] * a.u[i];
+    nb += b.u[i] * b.u[i];
+  }
+  const double sigma = std::sqrt(na) / (std::sqrt(na) + std::sqrt(nb));
+  Vector guess = a.u + sigma * (b.u - a.u);
+  for (int i : odd) guess[i] = 0.0;
+  std::vector<int> active = curve_.blocks().active;
+  active.push_back(r);
+  std::sort(active.begin(), active.end());
+  const Blocks blocks = make_blocks(f, active);
+  for (std::size_t k = 1; k < blocks.indices.size(); ++k) {
+    if (blocks.indices[k].empty() || f.reflections()[static_cast<std::size_t>(r)].signs[blocks.indices[k].front()] > 0.0) continue;
+    SingularSystem system(f, blocks.indices[0], blocks.indices[k], guess);
+    const NewtonResult result = newton(system, system.unknowns(guess), {.tolerance = 1e-13, .max_iterations = 15});
+    if (!result.ok() && !(result.outcome == Outcome::stalled && result.residual < 1e-12)) continue;
+    const Vector u = system.base_point(result.x);
+    const double chord = curve_.length(b.u - a.u);
+    if (curve_.length(u - guess) > chord) continue;
+    out = {};
+    out.type = EventType::branch_point;
+    out.subtype = blocks.subtype[k];
+    out.block = static_cast<int>(k);
+    out.u = u;
+    for (int i : odd) out.u[i] = 0.0;
+    out.tangent = (b.u - a.u) / chord;
+    out.null_vector = system.null_vector(result.x);
+    out.residual = result.residual;
+    out.unstable_before = out.unstable_after = total_unstable(a.signature);
+    out.bracket[0] = std::min({u[f.size()], a.u[f.size()], b.u[f.size()]});
+    out.bracket[1] = std::max({u[f.size()], a.u[f.size()], b.u[f.size()]});
+    return true;
+  }
+  return false;
+}
+
+}  // namespace whirl::continuation

@@ -1,0 +1,134 @@
+#include "continuation/network.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+
+#include "continuation/switching.hpp"
+#include "core/newton.hpp"
+
+namespace whirl::continuation {
+
+Network::Network(const Problem& problem, NetworkOptions options) : problem_(problem), options_(std::move(options)) { options_.walk.validate(); }
+
+bool Network::same_up_to_mirror(In a, In b) const {
+  const int n = problem_.size();
+  const double limit = options_.same * (1.0 + a.head(n).norm());
+  if (std::abs(a[n] - b[n]) > options_.same * (options_.walk.upper - options_.walk.lower)) return false;
+  // All products of the reflections: they commute, so each is a subset.
+  const std::size_t count = problem_.reflections().size();
+  for (std::size_t subset = 0; subset < (std::size_t{1} << count); ++subset) {
+    Vector signs = Vector::Ones(n);
+    for (std::size_t r = 0; r < count; ++r)
+      if (subset >> r & 1) signs.array() *= problem_.reflections()[r].signs.array();
+    if ((a.head(n) - signs.cwiseProduct(b.head(n))).norm() <= limit) return true;
+  }
+  return false;
+}
+
+std::vector<std::pair<int, Vector>> Network::solutions_at(double p) const {
+  const int n = problem_.size();
+  std::vector<std::pair<int, Vector>> all;
+  for (int b = 0; b < static_cast<int>(branches_.size()); ++b) {
+    const Branch& branch = branches_[static_cast<std::size_t>(b)];
+    // Points and special points in order: a fold between two points must not hide what lies beyond them.
+    struct Knot {
+      double s;
+      Vector u;
+    };
+    std::vector<Knot> knots;
+    std::size_t next = 0;
+    for (int i = 0; i < branch.points(); ++i) {
+      for (; next < branch.special.size() && branch.special[next].arclength < branch.arclength(i); ++next)
+        knots.push_back({branch.special[next].arclength, branch.special[next].u});
+      knots.push_back({branch.arclength(i), branch.u(i)});
+    }
+    const std::size_t first = all.size();
+    for (std::size_t i = 0; i + 1 < knots.size(); ++i) {
+      const double p0 = knots[i].u[n], p1 = knots[i + 1].u[n];
+      if ((p0 - p) * (p1 - p) > 0.0 || p0 == p1) continue;
+      Vector guess = knots[i].u + (p - p0) / (p1 - p0) * (knots[i + 1].u - knots[i].u);
+      guess[n] = p;
+      const NewtonResult r = newton(problem_, guess, {.tolerance = 1e-11, .max_iterations = 15});
+      const double chord = (knots[i + 1].u - knots[i].u).norm();
+      if (!r.ok() || (r.x - guess).norm() > chord + 1e-9) continue;
+      const bool repeated = std::any_of(all.begin() + static_cast<std::ptrdiff_t>(first), all.end(),
+                                        [&](const auto& known) { return (known.second - r.x).norm() < 1e-9 * (1.0 + r.x.norm()); });
+      if (!repeated) all.emplace_back(b, r.x);
+    }
+  }
+  return all;
+}
+
+bool Network::contains(In u) const {
+  const int n = problem_.size();
+  for (const auto& [branch, known] : solutions_at(u[n]))
+    if (same_up_to_mirror(known, u)) return true;
+  return false;
+}
+
+int Network::unstable_at(int branch, In u) const {
+  const Branch& b = branches_[static_cast<std::size_t>(branch)];
+  Matrix j(problem_.size(), problem_.size() + 1);
+  problem_.jacobian(u, j);
+  const Blocks blocks = make_blocks(problem_, b.active_reflections);
+  Spectrum spectrum(blocks);
+  return spectrum.compute(j) ? spectrum.unstable() : -1;
+}
+
+bool Network::add_seed(const Vector& u0, const std::string& origin) {
+  if (stopped_ || static_cast<int>(branches_.size()) >= options_.max_branches || contains(u0)) return false;
+  Walker walker(problem_, options_.walk);
+  Branch branch = walker.walk(u0, observer_);
+  branch.born_at = origin;
+  adopt(std::move(branch), 0);
+  return true;
+}
+
+void Network::adopt(Branch branch, int generation) {
+  if (branch.stop_reason == StopReason::observer || branch.start_reason == StopReason::observer) stopped_ = true;
+  const std::string prefix = namer_ ? namer_(branch) : "B";
+  int number = 1;
+  for (const auto& b : branches_)
+    if (b.name.starts_with(prefix) && b.name.find_first_not_of("0123456789", prefix.size()) == std::string::npos) ++number;
+  branch.name = fmt::format("{}{}", prefix, number);
+  const int index = static_cast<int>(branches_.size());
+  int count = 0;
+  for (auto& s : branch.special) {
+    if (s.type != EventType::branch_point) continue;
+    ++count;
+    const auto known = std::find_if(junctions_.begin(), junctions_.end(), [&](const Junction& j) { return same_up_to_mirror(j.point.u, s.u); });
+    if (known != junctions_.end()) {
+      known->done = true;  // this branch ends at a point where another would have been switched to it
+      continue;
+    }
+    const bool arrives = branch.stop_reason == StopReason::symmetric_branch && &s == &branch.special.back();
+    junctions_.push_back({s, index, count, generation, arrives});
+  }
+  branches_.push_back(std::move(branch));
+  if (on_branch_) on_branch_(branches_.back());
+}
+
+void Network::switch_branches() {
+  for (std::size_t i = 0; i < junctions_.size(); ++i) {
+    if (stopped_ || static_cast<int>(branches_.size()) >= options_.max_branches) return;
+    if (junctions_[i].done || junctions_[i].generation >= options_.depth) continue;
+    junctions_[i].done = true;
+    SpecialPoint point = junctions_[i].point;
+    const std::string origin = fmt::format("{}:BP{}", branches_[static_cast<std::size_t>(junctions_[i].branch)].name, junctions_[i].number);
+    const int generation = junctions_[i].generation + 1;
+    for (const Departure& d : departures(problem_, point)) {
+      for (auto& s : branches_[static_cast<std::size_t>(junctions_[i].branch)].special)
+        if (s.type == EventType::branch_point && s.subtype.empty() && (s.u - point.u).norm() == 0.0) s.subtype = point.subtype;
+      Walker walker(problem_, options_.walk);
+      Branch branch = walker.walk_from(point.u, d.direction, true, observer_);
+      if (d.both_senses && branch.stop_reason != StopReason::closed_loop)
+        branch = Branch::joined(walker.walk_from(point.u, -d.direction, true, observer_), branch);
+      branch.born_at = origin;
+      adopt(std::move(branch), generation);
+    }
+  }
+}
+
+}  // namespace whirl::continuation

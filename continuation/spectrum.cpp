@@ -1,0 +1,64 @@
+#include "continuation/spectrum.hpp"
+
+namespace whirl::continuation {
+namespace {
+
+// Roots of z^2 - trace z + det, the smaller real root without cancellation.
+void two_by_two(const Matrix& a, std::complex<double>& z0, std::complex<double>& z1) {
+  const double half_trace = 0.5 * (a(0, 0) + a(1, 1)), half_gap = 0.5 * (a(0, 0) - a(1, 1));
+  const double discriminant = half_gap * half_gap + a(0, 1) * a(1, 0);
+  if (discriminant < 0.0) {
+    z0 = {half_trace, std::sqrt(-discriminant)};
+    z1 = std::conj(z0);
+    return;
+  }
+  const double det = a(0, 0) * a(1, 1) - a(0, 1) * a(1, 0);
+  const double large = half_trace + std::copysign(std::sqrt(discriminant), half_trace);
+  z0 = large;
+  z1 = large == 0.0 ? 0.0 : det / large;
+}
+
+}  // namespace
+
+Spectrum::Spectrum(const Blocks& blocks) : blocks_(&blocks), unstable_(Eigen::VectorXi::Zero(static_cast<int>(blocks.indices.size()))) {
+  int n = 0;
+  for (const auto& indices : blocks.indices) {
+    const int m = static_cast<int>(indices.size());
+    n += m;
+    block_.emplace_back(m, m);
+    solver_.push_back(m > 2 ? std::make_unique<Eigen::EigenSolver<Matrix>>(m) : nullptr);
+  }
+  eigenvalues_ = Eigen::VectorXcd::Zero(n);
+  lead_ = Vector::Zero(unstable_.size());
+}
+
+bool Spectrum::compute(MatrixIn jacobian) {
+  int first = 0;
+  for (std::size_t k = 0; k < block_.size(); ++k) {
+    const auto& indices = blocks_->indices[k];
+    const int m = static_cast<int>(indices.size());
+    Matrix& a = block_[k];
+    for (int j = 0; j < m; ++j)
+      for (int i = 0; i < m; ++i) a(i, j) = jacobian(indices[std::size_t(i)], indices[std::size_t(j)]);
+    if (m == 1) eigenvalues_[first] = a(0, 0);
+    if (m == 2) two_by_two(a, eigenvalues_[first], eigenvalues_[first + 1]);
+    if (m > 2) {
+      solver_[k]->compute(a, false);
+      if (solver_[k]->info() != Eigen::Success) return false;
+      eigenvalues_.segment(first, m) = solver_[k]->eigenvalues();
+    }
+    int count = 0;
+    double lead = std::numeric_limits<double>::infinity();
+    for (int i = first; i < first + m; ++i) {
+      const double re = eigenvalues_[i].real();
+      if (re > 0.0) ++count;
+      if (std::abs(re) < std::abs(lead)) lead = re;
+    }
+    unstable_[static_cast<int>(k)] = count;
+    lead_[static_cast<int>(k)] = lead;
+    first += m;
+  }
+  return eigenvalues_.allFinite();
+}
+
+}  // namespace whirl::continuation

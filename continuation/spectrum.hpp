@@ -1,0 +1,33 @@
+#pragma once
+/// Eigenvalues of r_x, block by block, without allocation after construction.
+
+#include <Eigen/Eigenvalues>
+#include <memory>
+
+#include "continuation/blocks.hpp"
+
+namespace whirl::continuation {
+
+class Spectrum {
+ public:
+  explicit Spectrum(const Blocks& blocks);
+
+  /// Eigenvalues of the leading n x n part of `jacobian`; false if they could not be computed.
+  [[nodiscard]] bool compute(MatrixIn jacobian);
+
+  const Eigen::VectorXcd& eigenvalues() const { return eigenvalues_; }  ///< block after block
+  int unstable(int block) const { return unstable_[block]; }            ///< eigenvalues of the block with positive real part
+  int unstable() const { return unstable_.sum(); }
+  /// Real part nearest to zero in the block: the test function that announces an event.
+  double lead(int block) const { return lead_[block]; }
+
+ private:
+  const Blocks* blocks_;
+  std::vector<Matrix> block_;
+  std::vector<std::unique_ptr<Eigen::EigenSolver<Matrix>>> solver_;
+  Eigen::VectorXcd eigenvalues_;
+  Eigen::VectorXi unstable_;
+  Vector lead_;
+};
+
+}  // namespace whirl::continuation

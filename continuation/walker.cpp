@@ -1,0 +1,379 @@
+#include "continuation/walker.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "core/newton.hpp"
+
+namespace whirl::continuation {
+
+void WalkOptions::validate() const {
+  if (!(lower < upper) || !std::isfinite(lower) || !std::isfinite(upper))
+    throw std::invalid_argument(fmt::format("the parameter range must be increasing and finite, got [{}, {}]", lower, upper));
+  if (!(min_step > 0.0 && min_step <= initial_step && initial_step <= max_step))
+    throw std::invalid_argument(
+        fmt::format("steps must satisfy 0 < min_step <= initial_step <= max_step, got {}, {}, {}", min_step, initial_step, max_step));
+  if (!(max_angle_deg > 0.0 && max_angle_deg < 90.0))
+    throw std::invalid_argument(fmt::format("max_angle_deg must be in (0, 90), got {}", max_angle_deg));
+  if (max_points < 2) throw std::invalid_argument(fmt::format("max_points must be >= 2, got {}", max_points));
+}
+
+// Everything the loop touches, allocated once per walk.
+struct Walker::State {
+  State(const Problem& f, Blocks blocks, const WalkOptions& o)
+      : curve(f, std::move(blocks), o.corrector), finder(curve, o.events), branch(f.size(), f.is_flow(), o.max_points), step(o.initial_step) {
+    for (auto* p : {&now, &before, &next}) {
+      p->u = Vector::Zero(f.size() + 1);
+      p->tangent = Vector::Zero(f.size() + 1);
+    }
+    predicted = bend = start_u = start_tangent = Vector::Zero(f.size() + 1);
+  }
+  Curve curve;
+  EventFinder finder;
+  Branch branch;
+  Sample before, now, next;
+  Vector predicted, bend, start_u, start_tangent;
+  Curve::Report report;
+  double step, step_taken = 0.0, arclength = 0.0, largest_x = 0.0;
+  double factor = 1.0;  // by which the next step may change
+  int accepted = 0;
+  bool has_signature = false;  // of `now`; not at a branch point, where it is undefined
+  StopReason stop = StopReason::none;
+  const Observer* observer = nullptr;
+};
+
+Walker::Walker(const Problem& problem, WalkOptions options) : problem_(problem), options_(std::move(options)) { options_.validate(); }
+Walker::~Walker() = default;
+
+Branch Walker::walk(const Vector& u0, const Observer& observer) {
+  const int n = problem_.size();
+  NewtonResult polished = newton(problem_, u0, {.tolerance = 1e-12, .max_iterations = 30});
+  if (!polished.ok())
+    throw std::invalid_argument(
+        fmt::format("no solution near the start of the branch: Newton {}, residual {:.3g}", to_string(polished.outcome), polished.residual));
+  const Vector up = Vector::Unit(n + 1, n);
+  Branch forward = walk_from(polished.x, up, false, observer);
+  if (forward.stop_reason == StopReason::closed_loop || forward.stop_reason == StopReason::observer || forward.points() == 0) return forward;
+  const Vector down = -forward.tangent(0);
+  const Branch backward = walk_from(polished.x, down, false, observer);
+  return Branch::joined(backward, forward);
+}
+
+Branch Walker::walk_from(const Vector& u0, const Vector& direction, bool from_branch_point, const Observer& observer) {
+  if (!begin(u0, direction, from_branch_point)) {
+    s_->branch.stop_reason = StopReason::min_step;
+    return std::move(s_->branch);
+  }
+  s_->observer = &observer;
+  const double sense = s_->now.tangent[problem_.size()], p0 = u0[problem_.size()];
+  if ((p0 >= options_.upper && sense > 0.0) || (p0 <= options_.lower && sense < 0.0)) s_->stop = StopReason::parameter_bound;
+  while (can_continue()) {
+    predict();
+    if (!correct()) {
+      shorten_step();
+      continue;
+    }
+    locate_events();
+    accept();
+    lengthen_step();
+  }
+  s_->branch.stop_reason = s_->stop;
+  return std::move(s_->branch);
+}
+
+bool Walker::begin(const Vector& u0, const Vector& direction, bool from_branch_point) {
+  const int n = problem_.size();
+  // A departing branch keeps only the symmetries that its direction keeps.
+  std::vector<int> active = active_reflections(problem_, u0.head(n));
+  std::erase_if(active, [&](int r) {
+    for (int i : odd_coordinates(problem_, r))
+      if (direction[i] != 0.0) return true;
+    return false;
+  });
+  s_ = std::make_unique<State>(problem_, make_blocks(problem_, active), options_);
+  State& s = *s_;
+  s.branch.active_reflections = active;
+  const double range = options_.upper - options_.lower;
+  s.largest_x = u0.head(n).norm();
+  s.curve.set_scales(s.largest_x > 0.0 ? s.largest_x : 1.0, range);
+  s.now.u = u0;
+  if (from_branch_point) {
+    s.now.tangent = direction / s.curve.length(direction);
+    Vector r(n);
+    problem_.residual(u0, r);
+    s.now.residual = r.lpNorm<Eigen::Infinity>();
+    Eigen::VectorXcd spectrum = Eigen::VectorXcd::Zero(n);
+    int unstable = 0;
+    if (problem_.is_flow()) {
+      Matrix j(n, n + 1);
+      problem_.jacobian(u0, j);
+      Spectrum eigen(s.curve.blocks());
+      if (eigen.compute(j)) {
+        spectrum = eigen.eigenvalues();
+        // the critical one is zero here up to rounding: do not count it
+        for (const auto& z : spectrum) unstable += z.real() > 1e-8 * (1.0 + std::abs(z)) ? 1 : 0;
+      }
+    }
+    s.branch.append(s.now.u, s.now.tangent, 0.0, s.now.residual, 0.0, 0, unstable, &spectrum);
+    s.branch.start_reason = StopReason::known_branch_point;
+  } else {
+    const Vector normal = direction;
+    if (!s.curve.sample(u0, normal, s.now)) return false;
+    if (s.largest_x == 0.0 && s.now.tangent.head(n).norm() > 0.0) {  // starts at rest: the slope tells the size of x
+      const double slope = s.now.tangent.head(n).norm() / std::abs(s.now.tangent[n]);
+      s.curve.set_scales(std::clamp(slope * range, 1e-12, 1e12), range);
+      if (!s.curve.sample(u0, normal, s.now)) return false;
+    }
+    s.has_signature = true;
+    int unstable = 0;
+    for (int count : s.now.signature.unstable) unstable += count;
+    s.branch.append(s.now.u, s.now.tangent, 0.0, s.now.residual, 0.0, s.now.iterations, unstable, &s.curve.spectrum().eigenvalues());
+  }
+  s.before = s.now;
+  s.start_u = s.now.u;
+  s.start_tangent = s.now.tangent;
+  return true;
+}
+
+bool Walker::can_continue() const { return s_->stop == StopReason::none; }
+
+// Tangent, bent by how it turned over the last step.
+void Walker::predict() {
+  State& s = *s_;
+  s.predicted = s.now.u + s.step * s.now.tangent;
+  if (s.accepted > 0 && s.step_taken > 0.0 && s.has_signature) {
+    s.bend = (s.now.tangent - s.before.tangent) * (0.5 * s.step * s.step / s.step_taken);
+    s.predicted += s.bend;
+  }
+}
+
+bool Walker::correct() {
+  State& s = *s_;
+  const int n = problem_.size();
+  s.next.u = s.predicted;
+  s.report = s.curve.correct(s.next.u, s.now.tangent, s.predicted);
+  if (!s.report.ok) return false;
+  const double beyond = s.next.u[n] - std::clamp(s.next.u[n], options_.lower, options_.upper);
+  if (beyond != 0.0) {
+    if (!reach_bound()) return false;
+  } else if (!s.curve.complete(s.next.u, s.now.tangent, s.next.tangent, s.next.signature)) {
+    return false;
+  }
+  // A jump into a symmetric branch is no step along this one.
+  for (int r = 0; r < static_cast<int>(problem_.reflections().size()); ++r) {
+    if (std::find(s.branch.active_reflections.begin(), s.branch.active_reflections.end(), r) != s.branch.active_reflections.end()) continue;
+    const auto& signs = problem_.reflections()[static_cast<std::size_t>(r)].signs;
+    double odd = 0.0, was_odd = 0.0;
+    for (int i = 0; i < n; ++i)
+      if (signs[i] < 0.0) {
+        odd = std::max(odd, std::abs(s.next.u[i]));
+        was_odd = std::max({was_odd, std::abs(s.now.u[i]), s.step * std::abs(s.now.tangent[i])});
+      }
+    if (odd < 1e-9 * was_odd) return false;
+  }
+  const double cosine = std::clamp(s.curve.dot(s.now.tangent, s.next.tangent), -1.0, 1.0);
+  const double angle = std::acos(cosine), limit = options_.max_angle_deg * std::numbers::pi / 180.0;
+  const bool first_off_branch_point = s.accepted == 0 && !s.has_signature;
+  const double by_angle = angle / (0.6 * limit);
+  const double by_contraction = std::sqrt(s.report.contraction / 0.05), by_distance = std::sqrt(s.report.first_step / 5e-3);
+  s.factor = std::clamp(std::max({by_angle, by_contraction, by_distance}), 0.5, 2.0);
+  if (angle > limit && !first_off_branch_point && s.step > 4.0 * options_.min_step) return false;
+  s.step_taken = s.curve.length(s.next.u - s.now.u);
+  for (std::size_t k = 0; k < s.curve.blocks().indices.size(); ++k)
+    s.next.lead[k] = problem_.is_flow() ? s.curve.spectrum().lead(static_cast<int>(k)) : 0.0;
+  s.next.residual = s.report.residual;
+  s.next.iterations = s.report.iterations;
+  return true;
+}
+
+// The step crosses a bound: end on it exactly.
+bool Walker::reach_bound() {
+  State& s = *s_;
+  const int n = problem_.size();
+  const double bound = s.next.u[n] < options_.lower ? options_.lower : options_.upper;
+  const double part = std::clamp((bound - s.now.u[n]) / (s.next.u[n] - s.now.u[n]), 0.0, 1.0);
+  s.next.u = s.now.u + part * (s.next.u - s.now.u);
+  s.next.u[n] = bound;
+  s.bend = Vector::Unit(n + 1, n) * (s.next.u[n] > s.now.u[n] ? 1.0 : -1.0);
+  s.predicted = s.next.u;
+  s.report = s.curve.correct(s.next.u, s.bend, s.predicted);
+  if (!s.report.ok || s.curve.length(s.next.u - s.now.u) > 2.0 * s.step) return false;
+  s.next.u[n] = bound;
+  if (!s.curve.complete(s.next.u, s.bend, s.next.tangent, s.next.signature)) return false;
+  s.stop = StopReason::parameter_bound;
+  return true;
+}
+
+void Walker::shorten_step() {
+  State& s = *s_;
+  s.stop = StopReason::none;
+  s.step *= 0.5;
+  if (s.step < options_.min_step) s.stop = StopReason::min_step;
+}
+
+void Walker::lengthen_step() {
+  State& s = *s_;
+  s.step = std::clamp(s.step / s.factor, options_.min_step, options_.max_step);
+}
+
+void Walker::locate_events() {
+  State& s = *s_;
+  if (!options_.locate_events || !s.has_signature) return;
+  SpecialPoint crossing;
+  for (int r = 0; r < static_cast<int>(problem_.reflections().size()); ++r) {
+    const auto& active = s.branch.active_reflections;
+    if (std::find(active.begin(), active.end(), r) != active.end() || !s.finder.mirror_crossing(s.now, s.next, r, crossing)) continue;
+    // Stop on the branch point; what lies between is still looked at. Not nearer than 1e-3 of the step: the critical eigenvalue and the
+    // slope of the parameter vanish with the square of the distance.
+    const Vector chord = s.next.u - s.now.u;
+    Sample last;
+    if (s.curve.sample(crossing.u - 1e-3 * s.step_taken * crossing.tangent, chord, last))
+      for (auto& e : s.finder.find(s.before, s.now, last)) {
+        e.arclength = s.arclength + s.curve.length(e.u - s.now.u);
+        s.branch.special.push_back(std::move(e));
+      }
+    s.next.u = crossing.u;
+    s.step_taken = s.curve.length(s.next.u - s.now.u);
+    crossing.arclength = s.arclength + s.step_taken;
+    s.branch.special.push_back(std::move(crossing));
+    s.stop = StopReason::symmetric_branch;
+    return;
+  }
+  const bool same = s.now.signature == s.next.signature;
+  bool near = false;  // the cheap half of EventFinder::look_closer, so that quiet steps cost nothing
+  if (same) {
+    const auto moved_more_than_left = [](double past, double from, double to) {
+      return std::min(std::abs(from), std::abs(to)) < std::max(std::abs(from - past), std::abs(to - from));
+    };
+    const int n = problem_.size();
+    near = moved_more_than_left(s.before.tangent[n], s.now.tangent[n], s.next.tangent[n]);
+    for (std::size_t k = 0; k < s.curve.blocks().indices.size() && !near; ++k)
+      near = moved_more_than_left(s.before.lead[k], s.now.lead[k], s.next.lead[k]) && problem_.is_flow();
+  }
+  if (!same || near)
+    for (auto& e : s.finder.find(s.before, s.now, s.next)) {
+      e.arclength = s.arclength + s.curve.length(e.u - s.now.u);
+      s.branch.special.push_back(std::move(e));
+    }
+  find_peaks_and_values();
+}
+
+void Walker::find_peaks_and_values() {
+  State& s = *s_;
+  const int n = problem_.size();
+  const auto add = [&](EventType type, const std::string& subtype, const Sample& at) {
+    SpecialPoint p;
+    p.type = type;
+    p.subtype = subtype;
+    p.u = at.u;
+    p.tangent = at.tangent;
+    p.residual = at.residual;
+    p.bracket[0] = s.now.u[n];
+    p.bracket[1] = s.next.u[n];
+    p.arclength = s.arclength + s.curve.length(at.u - s.now.u);
+    for (int count : at.signature.unstable) p.unstable_after += count;
+    p.unstable_before = p.unstable_after;
+    s.branch.special.push_back(std::move(p));
+  };
+  for (double value : options_.user_values) {
+    if ((s.now.u[n] - value) * (s.next.u[n] - value) > 0.0 || s.now.u[n] == value) continue;
+    const double part = (value - s.now.u[n]) / (s.next.u[n] - s.now.u[n]);
+    Vector guess = s.now.u + part * (s.next.u - s.now.u);
+    guess[n] = value;
+    const Vector normal = Vector::Unit(n + 1, n) * (s.next.u[n] > s.now.u[n] ? 1.0 : -1.0);
+    Sample at;
+    if (s.curve.sample(guess, normal, at)) add(EventType::user_value, "", at);
+  }
+  for (const auto& peak : options_.peaks) {
+    // Slope of the observable along the branch, by central difference along the tangent.
+    const auto slope = [&](const Sample& at) {
+      const double h = 1e-5 * std::min(1.0, s.curve.x_scale());
+      return (peak.value(at.u + h * at.tangent) - peak.value(at.u - h * at.tangent)) / (2.0 * h);
+    };
+    double f = slope(s.now), g = slope(s.next);
+    if (!(f * g < 0.0)) continue;
+    Sample at = s.next;
+    double lo = 0.0, hi = 1.0;
+    for (int i = 0; i < 60 && hi - lo > 1e-10; ++i) {
+      const double sigma = i % 3 == 2 ? 0.5 * (lo + hi) : std::clamp(lo + (hi - lo) * f / (f - g), lo + 0.02 * (hi - lo), hi - 0.02 * (hi - lo));
+      if (!s.curve.between(s.now, s.next, sigma, at)) break;
+      const double m = slope(at);
+      if (m * f > 0.0) {
+        lo = sigma;
+        f = m;
+      } else {
+        hi = sigma;
+        g = m;
+      }
+    }
+    add(EventType::peak, peak.name, at);
+  }
+}
+
+void Walker::accept() {
+  State& s = *s_;
+  const int n = problem_.size();
+  if (s.accepted > 2 && close_loop()) return;
+  int unstable = 0;
+  for (int count : s.next.signature.unstable) unstable += count;
+  s.arclength += s.step_taken;
+  // Events may have left another point's eigenvalues behind; they are few, so recompute only then.
+  if (problem_.is_flow() && s.stop != StopReason::symmetric_branch && !s.branch.special.empty() &&
+      s.branch.special.back().arclength > s.arclength - s.step_taken) {
+    s.bend = s.next.u;
+    Matrix j(n, n + 1);
+    problem_.jacobian(s.bend, j);
+    Spectrum eigen(s.curve.blocks());
+    if (eigen.compute(j))
+      s.branch.append(s.next.u, s.next.tangent, s.arclength, s.next.residual, s.step, s.next.iterations, unstable, &eigen.eigenvalues());
+  } else {
+    s.branch.append(s.next.u, s.next.tangent, s.arclength, s.next.residual, s.step, s.next.iterations, unstable, &s.curve.spectrum().eigenvalues());
+  }
+  std::swap(s.before, s.now);
+  std::swap(s.now, s.next);
+  if (!s.has_signature) s.before = s.now;
+  s.has_signature = true;
+  ++s.accepted;
+  const double size = s.now.u.head(n).norm();
+  if (size > 2.0 * s.largest_x || s.largest_x == 0.0) {
+    s.largest_x = size;
+    if (size > s.curve.x_scale()) {
+      s.curve.set_scales(size, options_.upper - options_.lower);
+      for (auto* p : {&s.before, &s.now}) p->tangent /= s.curve.length(p->tangent);
+      s.step_taken = s.curve.length(s.now.u - s.before.u);
+    }
+  }
+  if (s.stop == StopReason::none && s.branch.points() == s.branch.capacity()) s.stop = StopReason::max_points;
+  if (s.stop == StopReason::none && s.observer && *s.observer && !(*s.observer)(s.branch, s.branch.points() - 1)) s.stop = StopReason::observer;
+}
+
+// Does the step pass the first point in its sense? Then the curve is closed.
+bool Walker::close_loop() {
+  State& s = *s_;
+  const double d0 = s.curve.length(s.now.u - s.start_u), d1 = s.curve.length(s.next.u - s.start_u);
+  if (std::min(d0, d1) > 1.5 * s.step_taken || s.curve.dot(s.now.tangent, s.start_tangent) < 0.5) return false;
+  s.bend = s.start_u - s.now.u;
+  const double ahead = s.curve.dot(s.bend, s.now.tangent);
+  if (ahead < 0.0 || ahead > 1.2 * s.step_taken) return false;
+  s.predicted = s.start_u;
+  Sample at;
+  const Vector chord = s.next.u - s.now.u, before_start = s.now.u + (ahead / s.step_taken) * chord;
+  // Off the chord by the curvature only, and Newton from there in the start's plane must come to the start.
+  if (s.curve.length(before_start - s.start_u) > 0.3 * s.step_taken) return false;
+  Vector guess = before_start;
+  if (!s.curve.sample(guess, s.start_tangent, at)) return false;
+  const double shift = s.curve.dot(s.start_u - at.u, s.start_tangent);
+  if (!s.curve.sample(at.u + shift * s.start_tangent, s.start_tangent, at)) return false;
+  if (s.curve.length(at.u - s.start_u) > 1e-7) return false;
+  s.arclength += s.curve.length(s.start_u - s.now.u);
+  int unstable = 0;
+  for (int count : at.signature.unstable) unstable += count;
+  s.branch.append(s.start_u, s.start_tangent, s.arclength, at.residual, s.step, at.iterations, unstable, &s.curve.spectrum().eigenvalues());
+  s.stop = StopReason::closed_loop;
+  return true;
+}
+
+}  // namespace whirl::continuation

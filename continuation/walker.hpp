@@ -1,0 +1,73 @@
+#pragma once
+/// Pseudo-arclength walk along a solution curve of r(x, p) = 0, with stability, special points and a stop reason.
+///
+///     Walker walker(problem, {.lower = 1.2, .upper = 2.4});
+///     Branch branch = walker.walk(u0);                      // both directions from a solution u0 = (x0, p0)
+///     Branch half = walker.walk_from(u_bp, direction);      // one direction, e.g. off a branch point
+///
+/// Step control needs no tuning: lengths are measured in units of the parameter range and of the largest |x| met; the step follows the
+/// turning angle of the tangent, the first correction and the contraction of Newton. Throws std::invalid_argument for options out of range.
+/// A walk that cannot go on ends with a stop reason and all points so far.
+
+#include <functional>
+
+#include "continuation/branch.hpp"
+#include "continuation/events.hpp"
+
+namespace whirl::continuation {
+
+/// A named quantity of a point (an amplitude, say) for peaks and user values.
+struct Observable {
+  std::string name;
+  std::function<double(In u)> value;
+};
+
+struct WalkOptions {
+  double lower = 0.0, upper = 1.0;  ///< range of the parameter
+  double initial_step = 2e-3;       ///< in the metric: 1 is the whole range, or the largest |x|
+  double min_step = 1e-10;
+  double max_step = 0.04;
+  double max_angle_deg = 12.0;  ///< between successive tangents
+  int max_points = 4000;        ///< in one direction
+  CurveOptions corrector;
+  EventOptions events;
+  bool locate_events = true;
+  std::vector<double> user_values;  ///< parameter values to hit exactly, reported as UZ
+  std::vector<Observable> peaks;    ///< their extrema along the branch are reported as RP
+  void validate() const;
+};
+
+/// Called after each accepted point (branch so far, its last index); false stops the walk.
+using Observer = std::function<bool(const Branch&, int)>;
+
+class Walker {
+ public:
+  Walker(const Problem& problem, WalkOptions options);
+  ~Walker();
+
+  /// Both directions from a solution; points run with the parameter increasing at u0. Throws if u0 is no solution (Newton cannot polish it).
+  Branch walk(const Vector& u0, const Observer& observer = {});
+  /// One direction from a point on the curve, along `direction` (size n + 1). `from_branch_point`: u0 is kept as the first point unchanged and
+  /// the first step leaves along `direction`, which need not be a unique tangent there.
+  Branch walk_from(const Vector& u0, const Vector& direction, bool from_branch_point, const Observer& observer = {});
+
+ private:
+  struct State;
+  bool begin(const Vector& u0, const Vector& direction, bool from_branch_point);
+  bool can_continue() const;
+  void predict();
+  bool correct();
+  void shorten_step();
+  void accept();
+  void locate_events();
+  bool reach_bound();
+  bool close_loop();
+  void find_peaks_and_values();
+  void lengthen_step();
+
+  const Problem& problem_;
+  WalkOptions options_;
+  std::unique_ptr<State> s_;
+};
+
+}  // namespace whirl::continuation
