@@ -1,0 +1,160 @@
+#include "models/steady_motion.hpp"
+
+#include <fmt/format.h>
+
+#include <deque>
+#include <numbers>
+
+namespace whirl::models {
+namespace {
+
+constexpr double two_pi = 2.0 * std::numbers::pi;
+
+// Largest Lyapunov exponent: one tangent vector carried along by duals, renormalised every period.
+double largest_exponent(const ModalSystem<double>& system, const Vector& start, const SettleOptions& o) {
+  using D = Dual<double, 1>;
+  const auto n = static_cast<std::size_t>(2 * system.size());
+  const double period = two_pi / system.omega;
+  std::vector<D> y(n), d(n);
+  const auto flow = [&](double t, std::span<const double> z, std::span<double> out) {
+    for (std::size_t i = 0; i < n; ++i) {
+      y[i] = D(z[i]);
+      y[i].d[0] = z[n + i];
+    }
+    system.flow<D>(system.omega * t, y, d);
+    for (std::size_t i = 0; i < n; ++i) {
+      out[i] = d[i].v;
+      out[n + i] = d[i].d[0];
+    }
+  };
+  Vector z(2 * n);
+  z << start, Vector::Ones(static_cast<Eigen::Index>(n)).normalized();
+  IntegratorOptions integrator = o.integrator;
+  integrator.relative_tolerance = std::max(integrator.relative_tolerance, 1e-8);
+  integrator.absolute_tolerance = std::max(integrator.absolute_tolerance, 1e-10);
+  Integrator run(flow, 0.0, z, integrator);
+  double sum = 0.0;
+  const int skip = o.lyapunov_periods / 4;
+  for (int k = 0; k < o.lyapunov_periods; ++k) {
+    if (!run.advance(period)) return 0.0;
+    z = run.state();
+    const double growth = z.tail(static_cast<Eigen::Index>(n)).norm();
+    if (k >= skip) sum += std::log(growth);
+    z.tail(static_cast<Eigen::Index>(n)) /= growth;
+    run.restart(0.0, z);
+  }
+  return sum / ((o.lyapunov_periods - skip) * period);
+}
+
+}  // namespace
+
+const char* to_string(MotionKind kind) {
+  switch (kind) {
+    case MotionKind::periodic:
+      return "periodic";
+    case MotionKind::quasi_periodic:
+      return "quasi-periodic";
+    case MotionKind::chaotic:
+      return "chaotic";
+    case MotionKind::unsettled:
+      return "unsettled";
+    case MotionKind::failed:
+      return "failed";
+  }
+  return "?";
+}
+
+void SettleOptions::validate() const {
+  integrator.validate();
+  if (!(tolerance > 0.0)) throw std::invalid_argument(fmt::format("settle tolerance must be > 0, got {}", tolerance));
+  if (max_periods < 1 || max_multiple < 1 || samples < 8 || record_periods < 1 || lyapunov_periods < 0)
+    throw std::invalid_argument("settle needs max_periods, max_multiple, record_periods >= 1, samples >= 8, lyapunov_periods >= 0");
+}
+
+std::complex<double> SteadyMotion::harmonic(int i, double k) const {
+  const Eigen::Index total = record.cols();
+  const double cycles = k * record_periods;
+  if (kind == MotionKind::periodic && std::abs(cycles - std::round(cycles)) > 1e-9) return 0.0;  // no such harmonic in this motion
+  const bool window = kind != MotionKind::periodic;                                              // Hann where the record is not one period
+  std::complex<double> sum = 0.0;
+  double weight = 0.0;
+  for (Eigen::Index j = 0; j < total; ++j) {
+    const double w = window ? 0.5 * (1.0 - std::cos(two_pi * static_cast<double>(j) / static_cast<double>(total))) : 1.0;
+    sum += w * record(i, j) * std::polar(1.0, -cycles * two_pi * static_cast<double>(j) / static_cast<double>(total));
+    weight += w;
+  }
+  return sum * ((k == 0.0 ? 1.0 : 2.0) / weight);
+}
+
+SteadyMotion settle(const ModalSystem<double>& system, const Vector& y0, const SettleOptions& o) {
+  o.validate();
+  const int n = system.size();
+  if (y0.size() != 2 * n) throw std::invalid_argument(fmt::format("a start needs {} values (q, q'), got {}", 2 * n, y0.size()));
+  const double period = two_pi / system.omega;
+  SteadyMotion motion;
+  motion.omega = system.omega;
+  const auto flow = [&system](double t, std::span<const double> y, std::span<double> d) { system.flow<double>(system.omega * t, y, d); };
+  Integrator run(flow, 0.0, y0, o.integrator);
+  std::deque<Vector> past{y0};  // stroboscopic points, newest first
+  std::vector<double> last(static_cast<std::size_t>(o.max_multiple) + 1, 0.0);
+  std::vector<int> calm(last.size(), 0);
+  for (int k = 1; k <= o.max_periods && motion.multiple == 0; ++k) {
+    if (o.interrupted && *o.interrupted) break;
+    if (!run.advance(k * period)) {
+      motion.why = run.why();
+      motion.periods_integrated = k;
+      motion.state = run.state();
+      return motion;
+    }
+    const Vector x = run.state();
+    motion.periods_integrated = k;
+    const double limit = o.tolerance * (1.0 + x.norm());
+    for (int m = 1; m <= std::min(o.max_multiple, static_cast<int>(past.size())); ++m) {
+      const auto slot = static_cast<std::size_t>(m);
+      const double e = (x - past[slot - 1]).norm();
+      // Distances shrink by `rate` a period: what is left to go is about e rate^m / (1 - rate^m).
+      const double rate = last[slot] > 0.0 ? std::min(e / last[slot], 0.9999) : 0.9999;
+      const double left = e / (1.0 - std::pow(rate, m));
+      last[slot] = e;
+      calm[slot] = left < limit || e < 1e-3 * limit ? calm[slot] + 1 : 0;
+      if (calm[slot] >= 2 * m + 1) {
+        motion.multiple = m;
+        motion.distance = e;
+        break;
+      }
+    }
+    past.push_front(x);
+    if (static_cast<int>(past.size()) > o.max_multiple) past.pop_back();
+  }
+  motion.state = past.front();
+  if (motion.multiple > 0) {
+    motion.kind = MotionKind::periodic;
+  } else {
+    motion.distance = last[1];
+    motion.kind = MotionKind::unsettled;
+    const bool interrupted = o.interrupted && *o.interrupted;
+    if (o.lyapunov_periods > 0 && !interrupted) {
+      motion.lyapunov = largest_exponent(system, motion.state, o);
+      // A tangent vector along a torus neither grows nor shrinks; over N periods the estimate is good to about ln(N)/N.
+      const double resolution = std::log(static_cast<double>(o.lyapunov_periods)) / (o.lyapunov_periods * period);
+      if (motion.lyapunov > resolution) motion.kind = MotionKind::chaotic;
+      else if (motion.lyapunov > -resolution) motion.kind = MotionKind::quasi_periodic;
+    }
+  }
+  motion.record_periods = motion.multiple > 0 ? motion.multiple : o.record_periods;
+  const int total = o.samples * motion.record_periods;
+  motion.record.resize(2 * n, total);
+  run.restart(0.0, motion.state);
+  for (int j = 0; j < total; ++j) {
+    if (!run.advance(j * period * motion.record_periods / total)) {
+      motion.why = run.why();
+      motion.kind = MotionKind::failed;
+      motion.record.conservativeResize(2 * n, j);
+      return motion;
+    }
+    motion.record.col(j) = run.state();
+  }
+  return motion;
+}
+
+}  // namespace whirl::models

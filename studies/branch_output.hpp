@@ -1,0 +1,35 @@
+#pragma once
+/// Branches and special points as tables of the result file, as JSON, and as text: one list of columns for all three.
+
+#include <functional>
+
+#include "continuation/network.hpp"
+#include "studies/result_file.hpp"
+
+namespace whirl::studies {
+
+/// A quantity of a point u = (x, p) of a branch.
+struct PointColumn {
+  std::string name, unit, description;
+  std::function<double(In u)> value;
+};
+
+struct BranchOutput {
+  std::string parameter, parameter_unit;
+  std::vector<PointColumn> columns;  ///< amplitudes, phases, derived numbers
+  double period = 0.0;               ///< in excitation periods; 0 for equilibria
+
+  /// /branches/<name>: the columns, then n_unstable, eigenvalues, arclength, residual, step, newton_iterations.
+  void write_branch(ResultFile& file, const continuation::Branch& branch) const;
+  /// /special_points: one row each, all branches.
+  void write_special_points(ResultFile& file, const std::vector<continuation::Branch>& branches) const;
+  /// {"special_points": [...], "branches": [...]}
+  std::string json(const std::vector<continuation::Branch>& branches) const;
+  /// The table printed at the end of a run.
+  std::string text(const std::vector<continuation::Branch>& branches) const;
+};
+
+/// "LP", "BP", ...: with its running number on the branch, "LP2".
+std::string label(const continuation::Branch& branch, std::size_t special);
+
+}  // namespace whirl::studies

@@ -1,0 +1,40 @@
+#pragma once
+/// Keys, conversions and result-file parts that study kinds share.
+
+#include "continuation/network.hpp"
+#include "models/nielsen_kirkegaard.hpp"
+#include "models/steady_motion.hpp"
+#include "models/superharmonic.hpp"
+#include "studies/configuration.hpp"
+#include "studies/result_file.hpp"
+#include "studies/run_context.hpp"
+
+namespace whirl::studies {
+
+/// [cable] with coefficients, [model], [damping], [support_motion], omega.
+void add_stay_keys(Schema& schema);
+/// [continuation] with the parameter's default.
+void add_continuation_keys(Schema& schema, const std::string& default_parameter);
+void add_verification_keys(Schema& schema);
+
+models::StayParameters<double> stay_of(const Configuration& c);
+models::Coefficients coefficients_of(const Configuration& c);
+models::Terms terms_of(const Configuration& c);
+continuation::NetworkOptions network_of(const Configuration& c);
+models::SettleOptions settle_of(const Configuration& c);
+
+/// The parameter exists and its range lies within what the field accepts; InputError otherwise.
+void check_lens_range(const Configuration& c, const std::string& parameter, const continuation::WalkOptions& walk);
+/// Warnings of models::check; its refusals as InputError at the key's place.
+std::vector<std::string> check_cable(const Configuration& c);
+
+/// Largest chord tension over an excitation period at an averaged state [N].
+double largest_tension(const models::SuperharmonicFlow& flow, models::Coefficients choice, In u);
+
+/// /study: kind, version, git hash, libraries, configuration as text and as attributes.
+void write_study(ResultFile& file, const Configuration& c);
+void write_cable_numbers(ResultFile& file, const models::Cable<double>& cable);
+/// Warnings and stop reasons into /study; the exit status they amount to.
+ExitStatus finish(ResultFile& file, RunContext& context, const std::vector<continuation::Branch>& branches);
+
+}  // namespace whirl::studies

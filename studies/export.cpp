@@ -1,0 +1,104 @@
+#include "studies/export.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <fstream>
+#include <set>
+#include <string>
+
+#include "studies/configuration.hpp"
+#include "studies/result_file.hpp"
+
+namespace whirl::studies {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string csv_text(const std::string& text) {
+  if (text.find_first_of(",\"\n\r#") == std::string::npos) return text;
+  std::string s = "\"";
+  for (const char c : text) s += c == '"' ? std::string("\"\"") : std::string(1, c);
+  return s + '"';
+}
+
+struct Cells {
+  std::string name, unit;
+  std::vector<std::string> rows;
+};
+
+/// The columns in the order of the file.
+std::vector<Cells> cells_of(const ResultReader& reader, const std::string& group) {
+  const Table table = reader.table(group);
+  std::vector<Cells> all;
+  for (const std::string& name : reader.column_names(group)) {
+    Cells cells{name, "", {}};
+    for (const Column& c : table.columns) {
+      if (c.name != name) continue;
+      cells.unit = c.unit;
+      for (const double x : c.values) cells.rows.push_back(fmt::format("{:.17g}", x));
+    }
+    for (const TextColumn& c : table.text_columns)
+      if (c.name == name) std::transform(c.values.begin(), c.values.end(), std::back_inserter(cells.rows), csv_text);
+    all.push_back(std::move(cells));
+  }
+  return all;
+}
+
+std::string csv(const std::vector<Cells>& columns) {
+  std::vector<std::string> units, row;
+  std::size_t n = 0;
+  for (const Cells& c : columns) {
+    units.push_back(c.unit.empty() ? c.name : fmt::format("{} [{}]", c.name, c.unit));
+    row.push_back(csv_text(c.name));
+    n = std::max(n, c.rows.size());
+  }
+  std::string text = fmt::format("# {}\n{}\n", fmt::join(units, ", "), fmt::join(row, ","));
+  for (std::size_t i = 0; i < n; ++i) {
+    row.clear();
+    for (const Cells& c : columns) row.push_back(i < c.rows.size() ? c.rows[i] : "");
+    text += fmt::format("{}\n", fmt::join(row, ","));
+  }
+  return text;
+}
+
+/// Under another name first: whoever finds `path` finds all of it.
+void write_whole(const fs::path& path, const std::string& text) {
+  const fs::path part = path.string() + ".part";
+  std::ofstream out(part, std::ios::binary);
+  out << text;
+  out.close();
+  std::error_code failure, ignored;
+  if (out) fs::rename(part, path, failure);
+  if (out && !failure) return;
+  fs::remove(part, ignored);
+  throw InputError(fmt::format("{}: cannot be written", path.string()));
+}
+
+std::string file_name(const std::string& group, std::set<std::string>& taken) {
+  std::string stem = group == "/" ? "root" : group.substr(group.find_first_not_of('/'));
+  std::replace(stem.begin(), stem.end(), '/', '-');
+  std::string name = stem + ".csv";
+  for (int i = 2; !taken.insert(name).second; ++i) name = fmt::format("{}-{}.csv", stem, i);
+  return name;
+}
+
+}  // namespace
+
+std::vector<fs::path> export_csv(const fs::path& result, fs::path folder) {
+  const ResultReader reader(result);
+  if (folder.empty()) folder = result.parent_path() / (result.stem().string() + "-csv");
+  std::error_code failure;
+  fs::create_directories(folder, failure);
+  if (!fs::is_directory(folder, failure)) throw InputError(fmt::format("{}: cannot be created as a folder", folder.string()));
+  std::vector<fs::path> files;
+  std::set<std::string> taken;
+  for (const std::string& group : reader.tables()) {
+    files.push_back(folder / file_name(group, taken));
+    write_whole(files.back(), csv(cells_of(reader, group)));
+  }
+  return files;
+}
+
+}  // namespace whirl::studies

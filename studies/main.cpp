@@ -1,0 +1,93 @@
+// The program `whirl`: command line only; everything it does lives in the library beside it.
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <filesystem>
+
+#include "studies/export.hpp"
+#include "studies/registry.hpp"
+#include "studies/result_file.hpp"
+
+using namespace whirl::studies;
+namespace fs = std::filesystem;
+
+namespace {
+
+Configuration read(const std::string& file, const std::vector<std::string>& overrides) {
+  return Configuration::from_file(file, schemas(), overrides);
+}
+
+ExitStatus run(const std::string& file, const std::vector<std::string>& overrides, const std::string& output, bool json, bool quiet) {
+  const Configuration configuration = read(file, overrides);
+  RunContext context;
+  context.output = output.empty() ? fs::path(file).stem().concat(".h5") : fs::path(output);
+  context.json = json;
+  context.quiet = quiet;
+  const StudyKind& kind = study_kind(configuration.kind());
+  if (kind.check) (void)kind.check(configuration);  // bad input before anything is written
+  ResultFile::check_writable(context.output);
+  catch_interrupts();
+  const ExitStatus status = kind.run(configuration, context);
+  if (!quiet) fmt::print(stderr, "{}result: {}\n", interrupted ? "interrupted; " : "", context.output.string());
+  return status;
+}
+
+ExitStatus check(const std::string& file, const std::vector<std::string>& overrides) {
+  const Configuration configuration = read(file, overrides);
+  const StudyKind& kind = study_kind(configuration.kind());
+  if (kind.check)
+    for (const auto& w : kind.check(configuration)) fmt::print(stderr, "warning: {}\n", w);
+  fmt::print("{}: a valid {} study\n", file, configuration.kind());
+  return ExitStatus::ok;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app{"Whirl: nonlinear response of cables by continuation, averaging and time integration"};
+  app.set_version_flag("--version", version_text());
+  app.require_subcommand(1);
+  std::string file, output, kind;
+  std::vector<std::string> overrides;
+  bool json = false, quiet = false;
+
+  auto* run_command = app.add_subcommand("run", "run a study file");
+  run_command->add_option("FILE", file, "study file (TOML)")->required();
+  run_command->add_option("--set", overrides, "override a key: section.key=value (repeatable)")->allow_extra_args(false);
+  run_command->add_option("-o,--output", output, "result file; default: the study's name with .h5, in this folder");
+  run_command->add_flag("--json", json, "special points and branches as JSON on standard output");
+  run_command->add_flag("-q,--quiet", quiet, "no tables on standard error");
+  auto* check_command = app.add_subcommand("check", "read and check a study file, compute nothing");
+  check_command->add_option("FILE", file, "study file (TOML)")->required();
+  check_command->add_option("--set", overrides, "override a key: section.key=value (repeatable)")->allow_extra_args(false);
+  auto* init_command = app.add_subcommand("init", "print a commented study file");
+  init_command->add_option("KIND", kind, "study kind, see `whirl list`")->required();
+  auto* list_command = app.add_subcommand("list", "study kinds");
+  auto* export_command = app.add_subcommand("export", "tables of a result file as CSV, one file per branch");
+  export_command->add_option("FILE", file, "result file (HDF5)")->required();
+  export_command->add_option("-o,--output", output, "folder; default: <result>-csv beside the file");
+
+  ExitStatus status = ExitStatus::ok;
+  try {
+    app.parse(argc, argv);
+    if (run_command->parsed()) status = run(file, overrides, output, json, quiet);
+    if (check_command->parsed()) status = check(file, overrides);
+    if (init_command->parsed()) fmt::print("{}", example_toml(study_kind(kind).schema));
+    if (list_command->parsed())
+      for (const auto& k : study_kinds()) fmt::print("{:<16} {}\n", k.schema.kind(), k.schema.summary());
+    if (export_command->parsed())
+      for (const auto& written : export_csv(file, output)) fmt::print("{}\n", written.string());
+  } catch (const CLI::ParseError& e) {
+    const int code = app.exit(e);
+    return code == 0 ? 0 : 2;
+  } catch (const InputError& e) {
+    fmt::print(stderr, "error: {}\n", e.what());
+    status = ExitStatus::bad_input;
+  } catch (const std::exception& e) {
+    fmt::print(stderr, "error: {}\n", e.what());
+    status = ExitStatus::numerical_failure;
+  }
+  return static_cast<int>(status);
+}

@@ -1,0 +1,31 @@
+#include "studies/registry.hpp"
+
+#include <fmt/format.h>
+
+#include "studies/superharmonic_study.hpp"
+
+namespace whirl::studies {
+
+const std::vector<StudyKind>& study_kinds() {
+  static const std::vector<StudyKind> kinds = {superharmonic_study()};
+  return kinds;
+}
+
+std::vector<Schema> schemas() {
+  std::vector<Schema> all;
+  for (const auto& k : study_kinds()) all.push_back(k.schema);
+  return all;
+}
+
+const StudyKind& study_kind(std::string_view name) {
+  std::vector<std::string> names;
+  for (const auto& k : study_kinds()) {
+    if (k.schema.kind() == name) return k;
+    names.push_back(k.schema.kind());
+  }
+  const std::string guess = nearest(name, names);
+  throw InputError(
+      fmt::format("unknown study kind '{}'{}", name, guess.empty() ? "; `whirl list` names them" : fmt::format(", did you mean '{}'?", guess)));
+}
+
+}  // namespace whirl::studies

@@ -1,0 +1,67 @@
+#include "studies/run_context.hpp"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <Eigen/Core>
+#include <boost/version.hpp>
+#include <csignal>
+#include <cstdio>
+
+#include "core/kinsol.hpp"
+#include "studies/result_file.hpp"
+
+namespace whirl::studies {
+
+std::atomic<bool> interrupted{false};
+
+namespace {
+void on_interrupt(int) {
+  if (interrupted.exchange(true)) std::_Exit(130);  // a second Ctrl-C does not wait
+}
+}  // namespace
+
+void catch_interrupts() { std::signal(SIGINT, on_interrupt); }
+
+Progress::Progress() : terminal_(isatty(STDERR_FILENO) != 0) {}
+
+void Progress::show(const std::string& text) {
+  if (!terminal_) return;
+  const std::lock_guard lock(guard_);
+  const auto now = std::chrono::steady_clock::now();
+  if (now - last_ < std::chrono::milliseconds(100)) return;
+  last_ = now;
+  fmt::print(stderr, "\r{:<{}}", text, width_);
+  std::fflush(stderr);
+  width_ = text.size();
+}
+
+void Progress::clear() {
+  if (!terminal_ || width_ == 0) return;
+  const std::lock_guard lock(guard_);
+  fmt::print(stderr, "\r{:<{}}\r", "", width_);
+  std::fflush(stderr);
+  width_ = 0;
+}
+
+void RunContext::warn(const std::string& text) {
+  progress.clear();
+  fmt::print(stderr, "warning: {}\n", text);
+  warnings.push_back(text);
+}
+
+std::string git_hash() { return WHIRL_GIT_HASH; }
+
+std::vector<std::string> library_versions() {
+  return {fmt::format("Eigen {}.{}.{}", EIGEN_WORLD_VERSION, EIGEN_MAJOR_VERSION, EIGEN_MINOR_VERSION),
+          fmt::format("SUNDIALS {}", sundials_version()),
+          fmt::format("Boost {}.{}.{}", BOOST_VERSION / 100000, BOOST_VERSION / 100 % 1000, BOOST_VERSION % 100), hdf5_version()};
+}
+
+std::string version_text() {
+  std::string text = fmt::format("whirl {} ({})", WHIRL_VERSION, git_hash());
+  for (const auto& library : library_versions()) text += ", " + library;
+  return text;
+}
+
+}  // namespace whirl::studies

@@ -1,0 +1,279 @@
+/// The result file: what is written reads back, a killed run leaves a readable file, bad places and damaged files give one clear line.
+
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <csignal>
+#include <fstream>
+#include <limits>
+
+#include "studies/configuration.hpp"
+#include "studies/export.hpp"
+#include "studies/result_file.hpp"
+
+using namespace whirl::studies;
+namespace fs = std::filesystem;
+
+namespace {
+
+struct Folder {
+  fs::path path = fs::temp_directory_path() / ("whirl-test-result-" + std::to_string(::getpid()));
+  Folder() { fs::create_directories(path); }
+  ~Folder() { fs::remove_all(path); }
+  fs::path operator/(const std::string& name) const { return path / name; }
+};
+
+template <class Run>
+std::string message(Run&& run) {
+  try {
+    run();
+  } catch (const InputError& e) {
+    CHECK(std::string(e.what()).find('\n') == std::string::npos);
+    return e.what();
+  }
+  return "accepted";
+}
+
+std::string refusal_to_read(const fs::path& path) {
+  return message([&] { ResultReader reader(path); });
+}
+std::string refusal_to_write(const fs::path& path) {
+  const std::string early = message([&] { ResultFile::check_writable(path); });
+  CHECK(early == message([&] { ResultFile file(path); }));
+  return early;
+}
+
+std::string contents(const fs::path& path) {
+  std::ifstream in(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+std::vector<Column> branch(std::size_t rows) {
+  std::vector<Column> columns{{"omega", "rad/s", "excitation frequency", {}}, {"amplitude", "m", "amplitude of q1", {}}};
+  for (std::size_t i = 0; i < rows; ++i) {
+    columns[0].values.push_back(1.0 / (1.0 + static_cast<double>(i)));
+    columns[1].values.push_back(-1e-300 * static_cast<double>(i));
+  }
+  return columns;
+}
+
+void write_example(const fs::path& path) {
+  ResultFile file(path);
+  file.attribute("/study", "kind", "superharmonic");
+  file.attribute("/study", "tolerance", 1e-10);
+  file.attribute("/study", "warnings", std::vector<std::string>{"first", "second: \u03c9"});
+  file.attribute("/study", "none", std::vector<std::string>{});
+  file.attribute("/study", "range", std::vector<double>{1.0, 2.5});
+  file.text("/study", "configuration", "a = 1\n");
+  file.scalar("/cable", "sag_ratio", 0.01, "-", "sag over span");
+  file.table("/branches/IP1", branch(3), {{"type", "special point", {"LP", "BP, \"WH\"", ""}}});
+  file.table("/branches/OP1", branch(0), {{"type", "special point", {}}});
+}
+
+}  // namespace
+
+TEST_CASE("a result file reads back what was written", "[result_file]") {
+  const Folder folder;
+  write_example(folder / "r.h5");
+  const ResultReader reader(folder / "r.h5");
+  CHECK(reader.tables() == std::vector<std::string>{"/branches/IP1", "/branches/OP1"});
+  CHECK(reader.column_names("/branches/IP1") == std::vector<std::string>{"omega", "amplitude", "type"});
+  const Table table = reader.table("/branches/IP1");
+  REQUIRE(table.columns.size() == 2);
+  CHECK(table.columns[0].name == "omega");
+  CHECK(table.columns[0].unit == "rad/s");
+  CHECK(table.columns[0].description == "excitation frequency");
+  CHECK(table.columns[0].values == branch(3)[0].values);
+  CHECK(table.columns[1].values == branch(3)[1].values);
+  REQUIRE(table.text_columns.size() == 1);
+  CHECK(table.text_columns[0].values == std::vector<std::string>{"LP", "BP, \"WH\"", ""});
+  CHECK(reader.table("/branches/OP1").columns[0].values.empty());
+  CHECK(reader.table("/branches/OP1").text_columns[0].values.empty());
+  CHECK(reader.text_attribute("/study", "kind") == "superharmonic");
+  CHECK(reader.number_attribute("/study", "tolerance") == 1e-10);
+  CHECK(reader.texts_attribute("/study", "warnings") == std::vector<std::string>{"first", "second: \u03c9"});
+  CHECK(reader.texts_attribute("/study", "none").empty());
+  CHECK(reader.numbers_attribute("/study", "range") == std::vector<double>{1.0, 2.5});
+  CHECK(reader.attribute_names("/study") == std::vector<std::string>{"kind", "none", "range", "tolerance", "warnings"});
+  CHECK(reader.text("/study", "configuration") == "a = 1\n");
+  CHECK(reader.scalar("/cable", "sag_ratio").value == 0.01);
+  CHECK(reader.scalar("/cable", "sag_ratio").unit == "-");
+  CHECK(reader.children("/") == std::vector<std::string>{"study", "cable", "branches"});
+  CHECK(reader.has("/branches/IP1/omega"));
+  CHECK_FALSE(reader.has("/branches/IP2"));
+  const std::string name = (folder / "r.h5").string();
+  CHECK(message([&] { reader.table("/branches/IP2"); }) == name + ": has no group /branches/IP2");
+  CHECK(message([&] { reader.column("/branches/IP1", "tension"); }) == name + ": has no column /branches/IP1/tension");
+  CHECK(message([&] { reader.column("/branches/IP1", "type"); }) == name + ": /branches/IP1/type is not a column of numbers");
+  CHECK(message([&] { reader.text_column("/branches/IP1", "omega"); }) == name + ": /branches/IP1/omega is not a column of texts");
+  CHECK(message([&] { reader.number_attribute("/study", "kind"); }) == name + ": /study has no attribute kind of numbers");
+  CHECK(message([&] { reader.text_attribute("/nowhere", "kind"); }) == name + ": has no /nowhere");
+}
+
+TEST_CASE("what is written again is replaced", "[result_file]") {
+  const Folder folder;
+  {
+    ResultFile file(folder / "r.h5");
+    for (std::size_t rows : {5u, 2u, 700u}) {
+      file.table("/branches/IP1", branch(rows), {{"type", "", std::vector<std::string>(rows, "LP")}});
+      file.attribute("/branches/IP1", "stop_reason", rows == 700u ? "range_end" : "running");
+      file.attribute("/branches/IP1", "points", static_cast<double>(rows));
+    }
+    CHECK_THROWS_AS(file.table("/x", {{"a", "", "", {1.0}}, {"b", "", "", {}}}), std::invalid_argument);
+    CHECK_THROWS_AS(file.table("/x", {{"a/b", "", "", {1.0}}}), std::invalid_argument);
+  }
+  const ResultReader reader(folder / "r.h5");
+  CHECK(reader.column("/branches/IP1", "omega").values == branch(700)[0].values);
+  CHECK(reader.text_column("/branches/IP1", "type").values.size() == 700);
+  CHECK(reader.text_attribute("/branches/IP1", "stop_reason") == "range_end");
+}
+
+TEST_CASE("places where no result can be written", "[result_file]") {
+  const Folder folder;
+  CHECK(refusal_to_write(folder.path) == folder.path.string() + ": is a directory, not a result file");
+  const fs::path nowhere = folder / "no/such/r.h5";
+  CHECK(refusal_to_write(nowhere) == nowhere.string() + ": folder " + nowhere.parent_path().string() + " does not exist");
+  CHECK(refusal_to_write("/dev/null") == "/dev/null: is not a regular file");
+  CHECK(refusal_to_write("/dev/null/r.h5") == "/dev/null/r.h5: /dev/null is not a folder");
+  CHECK(refusal_to_write("") == "the result file has no name");
+  CHECK(message([] { ResultFile file("/proc/r.h5"); }).starts_with("/proc/r.h5: "));
+
+  ResultFile::check_writable(folder / "new.h5");
+  CHECK_FALSE(fs::exists(folder / "new.h5"));
+  std::ofstream(folder / "old.h5") << "kept";
+  ResultFile::check_writable(folder / "old.h5");
+  CHECK(contents(folder / "old.h5") == "kept");
+
+  fs::permissions(folder / "old.h5", fs::perms::owner_read);
+  if (::geteuid() != 0) CHECK(refusal_to_write(folder / "old.h5") == (folder / "old.h5").string() + ": is not writable");
+}
+
+TEST_CASE("files that are no result", "[result_file]") {
+  const Folder folder;
+  const std::string name = (folder / "r.h5").string();
+  CHECK(refusal_to_read(name) == name + ": no such file");
+  CHECK(refusal_to_read(folder.path) == folder.path.string() + ": is a directory, not a result file");
+  std::ofstream(name) << "study = 1\n";
+  CHECK(refusal_to_read(name) == name + ": is not an HDF5 file");
+  std::ofstream(name, std::ios::trunc).close();
+  CHECK(refusal_to_read(name) == name + ": is not an HDF5 file");
+  write_example(name);
+  const auto size = fs::file_size(name);
+  for (const auto left : {size - 1, size / 2, size / 4, std::uintmax_t{200}}) {
+    write_example(name);
+    fs::resize_file(name, left);
+    CHECK(refusal_to_read(name) == name + ": is truncated or damaged");
+  }
+}
+
+TEST_CASE("a killed run leaves what was flushed", "[result_file]") {
+  const Folder folder;
+  const fs::path path = folder / "r.h5";
+  const auto name = [](int i) { return "/branches/B" + std::to_string(i); };
+  const pid_t child = ::fork();
+  REQUIRE(child >= 0);
+  if (child == 0) {  // the run: killed with branches 100..399 written but not flushed
+    ResultFile file(path);
+    for (int i = 0; i < 400; ++i) {
+      file.table(name(i), branch(600), {{"type", "", std::vector<std::string>(600, "LP")}});
+      if (i == 99) file.flush();
+    }
+    ::kill(::getpid(), SIGKILL);
+  }
+  int status = 0;
+  ::waitpid(child, &status, 0);
+  REQUIRE(WIFSIGNALED(status));
+  const ResultReader reader(path);
+  REQUIRE(reader.tables().size() == 100);
+  for (int i = 0; i < 100; ++i) CHECK(reader.column(name(i), "amplitude").values == branch(600)[1].values);
+}
+
+TEST_CASE("a full disk leaves what was flushed", "[result_file]") {
+  const Folder folder;
+  const fs::path path = folder / "r.h5";
+  const pid_t child = ::fork();
+  REQUIRE(child >= 0);
+  if (child == 0) {  // no file may grow beyond 200 kB here
+    std::signal(SIGXFSZ, SIG_IGN);
+    const rlimit limit{200000, 200000};
+    ::setrlimit(RLIMIT_FSIZE, &limit);
+    int written = 0;
+    try {
+      ResultFile file(path);
+      for (; written < 100; ++written) {
+        file.table("/branches/B" + std::to_string(written), branch(2000));
+        file.flush();
+      }
+    } catch (const std::runtime_error& e) {
+      const bool clear = std::string(e.what()).starts_with(path.string() + ": writing ");
+      ::_exit(clear ? written : 101);
+    }
+    ::_exit(102);
+  }
+  int status = 0;
+  ::waitpid(child, &status, 0);
+  REQUIRE(WIFEXITED(status));
+  REQUIRE(WEXITSTATUS(status) > 1);
+  REQUIRE(WEXITSTATUS(status) < 100);
+  const ResultReader reader(path);
+  CHECK(reader.tables().size() == static_cast<std::size_t>(WEXITSTATUS(status)));
+  CHECK(reader.column("/branches/B0", "omega").values == branch(2000)[0].values);
+}
+
+TEST_CASE("a file in use is refused, not called damaged", "[result_file]") {
+  const Folder folder;
+  const fs::path path = folder / "r.h5";
+  ResultFile file(path);
+  file.flush();
+  CHECK(refusal_to_read(path) == path.string() + ": is being written by another program");
+  CHECK(refusal_to_write(path) == path.string() + ": is being written by another program");
+}
+
+TEST_CASE("export writes one CSV file per table", "[export]") {
+  const Folder folder;
+  write_example(folder / "r.h5");
+  const auto files = export_csv(folder / "r.h5");
+  REQUIRE(files == std::vector<fs::path>{folder / "r-csv/branches-IP1.csv", folder / "r-csv/branches-OP1.csv"});
+  CHECK(contents(files[0]) ==
+        "# omega [rad/s], amplitude [m], type\n"
+        "omega,amplitude,type\n"
+        "1,-0,LP\n"
+        "0.5,-1e-300,\"BP, \"\"WH\"\"\"\n"
+        "0.33333333333333331,-2.0000000000000001e-300,\n");
+  CHECK(contents(files[1]) == "# omega [rad/s], amplitude [m], type\nomega,amplitude,type\n");
+  CHECK(std::distance(fs::directory_iterator(folder / "r-csv"), fs::directory_iterator()) == 2);  // nothing half-written stays
+  CHECK(export_csv(folder / "r.h5", folder / "deep/er")[0] == folder / "deep/er/branches-IP1.csv");
+}
+
+TEST_CASE("export to a place that cannot be written", "[export]") {
+  const Folder folder;
+  write_example(folder / "r.h5");
+  std::ofstream(folder / "file") << "x";
+  const std::string file = (folder / "file").string();
+  CHECK(message([&] { export_csv(folder / "r.h5", file); }) == file + ": cannot be created as a folder");
+  fs::create_directories(folder / "out/branches-IP1.csv");
+  const std::string taken = (folder / "out/branches-IP1.csv").string();
+  CHECK(message([&] { export_csv(folder / "r.h5", folder / "out"); }) == taken + ": cannot be written");
+  CHECK_FALSE(fs::exists(taken + ".part"));
+  CHECK(message([&] { export_csv(folder / "none.h5"); }) == (folder / "none.h5").string() + ": no such file");
+}
+
+TEST_CASE("non-finite numbers and several tables with alike names", "[export]") {
+  const Folder folder;
+  const double inf = std::numeric_limits<double>::infinity();
+  {
+    ResultFile file(folder / "r.h5");
+    file.table("/a/b", {{"x", "", "", {inf, std::nan("")}}});
+    file.table("/a-b", {{"x", "-", "", {-inf}}});
+    file.table("/", {{"x", "-", "", {1.0}}});
+  }
+  const auto files = export_csv(folder / "r.h5");
+  REQUIRE(files.size() == 3);
+  CHECK(files[0].filename() == "root.csv");
+  CHECK(files[1].filename() == "a-b.csv");
+  CHECK(files[2].filename() == "a-b-2.csv");
+  CHECK(contents(files[1]) == "# x\nx\ninf\nnan\n");
+}
