@@ -1,3 +1,4 @@
+#!/usr/bin/env bash
 # Shared by run-demo and run-tests: Debian packages, configuring, building. Source it at the repository's root, or run it to set up and build.
 
 # Names in package lists, comments and empty lines left out.

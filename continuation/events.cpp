@@ -14,6 +14,21 @@ double fraction(const Curve& curve, const Sample& a, const Sample& b, In u) {
   return curve.dot(chord, u - a.u) / curve.dot(chord, chord);
 }
 
+int unstable_pairs(const Spectrum& spectrum) {
+  int count = 0;
+  for (const auto& z : spectrum.eigenvalues()) count += z.real() > 0.0 && z.imag() > 0.0 ? 1 : 0;
+  return count;
+}
+
+// What is known just before and just behind a point holds for one that coincides with it.
+void copy_sides(const SpecialPoint& from, SpecialPoint& to) {
+  to.unstable_before = from.unstable_before;
+  to.unstable_after = from.unstable_after;
+  to.bracket[0] = std::min(from.bracket[0], to.u[to.u.size() - 1]);
+  to.bracket[1] = std::max(from.bracket[1], to.u[to.u.size() - 1]);
+  to.tangent = from.tangent;
+}
+
 Indices block_or_empty(const Blocks& blocks, int k) { return blocks.indices[static_cast<std::size_t>(k)]; }
 
 }  // namespace
@@ -76,7 +91,6 @@ void EventFinder::report_unresolved(const Sample& a, const Sample& b) {
 }
 
 void EventFinder::look_closer(const Sample& before, const Sample& a, const Sample& b, int depth) {
-  if (depth >= options_.suspicion_depth) return;
   const int n = curve_.problem().size();
   // Something that may touch zero and return: nearer to zero than it moved lately.
   const auto suspicious = [](double past, double from, double to) {
@@ -86,13 +100,30 @@ void EventFinder::look_closer(const Sample& before, const Sample& a, const Sampl
   bool near = suspicious(before.tangent[n], a.tangent[n], b.tangent[n]);
   for (std::size_t k = 0; k < curve_.blocks().indices.size(); ++k) near = near || suspicious(before.lead[k], a.lead[k], b.lead[k]);
   Sample middle;
-  if (!near || !curve_.between(a, b, 0.5, middle)) return;
-  if (changes(a.signature, middle.signature).empty()) {
+  if (!near || depth >= options_.suspicion_depth || !curve_.between(a, b, 0.5, middle)) return;
+  if (!changes(a.signature, middle.signature).empty()) {
+    explain(a, middle, depth + 1);
+    explain(middle, b, depth + 1);
+  } else if (depth + 1 < options_.suspicion_depth) {
     look_closer(before, a, middle, depth + 1);
     look_closer(a, middle, b, depth + 1);
   } else {
-    explain(a, middle, depth + 1);
-    explain(middle, b, depth + 1);
+    look_at_extrema(a, middle, b, depth + 1);
+  }
+}
+
+// Halving has come to where the parabola through a, the middle and b is trusted: does a test function change sign at its vertex?
+void EventFinder::look_at_extrema(const Sample& a, const Sample& middle, const Sample& b, int depth) {
+  const auto vertex = [](double from, double half, double to) { return 0.5 - 0.25 * (to - from) / (from - 2.0 * half + to); };
+  const int n = curve_.problem().size();
+  std::vector<double> fractions = {vertex(a.tangent[n], middle.tangent[n], b.tangent[n])};
+  for (std::size_t k = 0; k < curve_.blocks().indices.size(); ++k) fractions.push_back(vertex(a.lead[k], middle.lead[k], b.lead[k]));
+  for (const double sigma : fractions) {
+    Sample at;
+    if (!(sigma > 0.0 && sigma < 1.0) || !curve_.between(a, b, sigma, at) || changes(a.signature, at.signature).empty()) continue;
+    explain(a, at, depth);
+    explain(at, b, depth);
+    return;
   }
 }
 
@@ -191,9 +222,13 @@ bool EventFinder::accept(const Kind& kind, const Sample& a, const Sample& b, Spe
   for (double delta = std::min(1e-6, 0.01 * span); delta < 0.5 * span; delta *= 10.0) {
     Sample left, right;
     const Vector offset = (delta / unit) * chord;
-    if (!curve_.sample(point.u - offset, chord, left) || !curve_.sample(point.u + offset, chord, right)) continue;
+    if (!curve_.sample(point.u - offset, chord, left)) continue;
+    const int pairs_left = unstable_pairs(curve_.spectrum());
+    if (!curve_.sample(point.u + offset, chord, right)) continue;
+    const int pairs_right = unstable_pairs(curve_.spectrum());
     const auto shown = changes(left.signature, right.signature);
     const auto same = [&](const Kind& k) { return k.type == kind.type && k.block == kind.block; };
+    const auto is_hopf = [](const Kind& k) { return k.type == EventType::hopf; };
     if (std::none_of(shown.begin(), shown.end(), same)) continue;
     point.unstable_before = total_unstable(left.signature);
     point.unstable_after = total_unstable(right.signature);
@@ -211,15 +246,18 @@ bool EventFinder::accept(const Kind& kind, const Sample& a, const Sample& b, Spe
       SpecialPoint second;
       if (same(other)) continue;
       if (solve(other, left, second) && curve_.length(second.u - point.u) < 2.0 * delta) {
-        second.unstable_before = point.unstable_before;
-        second.unstable_after = point.unstable_after;
-        second.bracket[0] = point.bracket[0];
-        second.bracket[1] = point.bracket[1];
-        second.tangent = point.tangent;
+        copy_sides(point, second);
         found_.push_back(second);
       } else {
         report_unresolved(left, right);
       }
+    }
+    // A real eigenvalue through zero changes the count by one and so hides a pair that crosses within the same delta.
+    SpecialPoint pair;
+    if (kind.type != EventType::hopf && pairs_left != pairs_right && std::none_of(shown.begin(), shown.end(), is_hopf) &&
+        solve({EventType::hopf, kind.block}, left, pair) && curve_.length(pair.u - point.u) < 2.0 * delta) {
+      copy_sides(point, pair);
+      found_.push_back(pair);
     }
     explain(a, left, depth + 1);
     explain(right, b, depth + 1);

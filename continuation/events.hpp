@@ -18,7 +18,7 @@ namespace whirl::continuation {
 struct EventOptions {
   double tolerance = 1e-10;  ///< relative, of the located parameter
   int max_depth = 24;        ///< halvings of a step before a change counts as unresolved
-  int suspicion_depth = 6;   ///< halvings while nothing changes but something comes near
+  int suspicion_depth = 6;   ///< halvings while nothing changes but something comes near; then the vertex of a parabola
 };
 
 class EventFinder {
@@ -39,6 +39,7 @@ class EventFinder {
   std::vector<Kind> changes(const Signature& a, const Signature& b) const;
   void explain(const Sample& a, const Sample& b, int depth);
   void look_closer(const Sample& before, const Sample& a, const Sample& b, int depth);
+  void look_at_extrema(const Sample& a, const Sample& middle, const Sample& b, int depth);
   bool locate(const Kind& kind, const Sample& a, const Sample& b, SpecialPoint& out);
   bool solve(const Kind& kind, const Sample& near, SpecialPoint& out);
   bool accept(const Kind& kind, const Sample& a, const Sample& b, SpecialPoint& found, int depth);

@@ -343,6 +343,7 @@ void Walker::accept() {
     if (size > s.curve.x_scale()) {
       s.curve.set_scales(size, options_.upper - options_.lower);
       for (auto* p : {&s.before, &s.now}) p->tangent /= s.curve.length(p->tangent);
+      s.start_tangent /= s.curve.length(s.start_tangent);  // close_loop measures in the new metric
       s.step_taken = s.curve.length(s.now.u - s.before.u);
     }
   }
@@ -372,6 +373,8 @@ bool Walker::close_loop() {
   int unstable = 0;
   for (int count : at.signature.unstable) unstable += count;
   s.branch.append(s.start_u, s.start_tangent, s.arclength, at.residual, s.step, at.iterations, unstable, &s.curve.spectrum().eigenvalues());
+  // What lies behind the first point was found by the first step.
+  std::erase_if(s.branch.special, [&s](const SpecialPoint& e) { return e.arclength > s.arclength; });
   s.stop = StopReason::closed_loop;
   return true;
 }

@@ -30,7 +30,7 @@ void SuperharmonicFlow::do_residual(In u, Out r) const {
 }
 
 template <int K>
-void SuperharmonicFlow::linearise(In u, double* r, MatrixOut j) const {
+void SuperharmonicFlow::evaluate(In u, double* r, MatrixOut j) const {
   using P = Dual<double, K>;
   std::array<P, K> p;
   for (int i = 0; i < K; ++i) p[std::size_t(i)] = seed<P>(u[4 + i], i);
@@ -68,11 +68,11 @@ void SuperharmonicFlow::linearise(In u, double* r, MatrixOut j) const {
 void SuperharmonicFlow::do_linearise(In u, Out r, MatrixOut j) const {
   switch (parameters()) {
     case 0:
-      return linearise<0>(u, r.data(), j);
+      return evaluate<0>(u, r.data(), j);
     case 1:
-      return linearise<1>(u, r.data(), j);
+      return evaluate<1>(u, r.data(), j);
     case 2:
-      return linearise<2>(u, r.data(), j);
+      return evaluate<2>(u, r.data(), j);
     default:
       throw std::logic_error("at most two lenses");
   }

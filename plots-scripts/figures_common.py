@@ -1,0 +1,323 @@
+"""What every figure shares: style, axis labels, stability segments, special points, labels that keep clear of each other."""
+import textwrap
+from dataclasses import dataclass
+
+import matplotlib
+import numpy as np
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from matplotlib.transforms import Bbox
+
+matplotlib.rcParams.update({
+    "font.size": 9.5, "axes.labelsize": 10, "axes.titlesize": 9.5, "legend.fontsize": 9, "xtick.labelsize": 9,
+    "ytick.labelsize": 9, "font.family": "DejaVu Sans", "mathtext.fontset": "dejavusans", "axes.linewidth": 0.7,
+    "xtick.direction": "in", "ytick.direction": "in", "xtick.major.width": 0.7, "ytick.major.width": 0.7,
+    "legend.frameon": False, "pdf.fonttype": 42, "axes.unicode_minus": True, "lines.solid_capstyle": "butt",
+})
+
+# Okabe and Ito: told apart with any colour vision.
+BLUE, VERMILLION, GREEN, PURPLE, SKY, ORANGE = "#0072B2", "#D55E00", "#009E73", "#AA4499", "#56B4E9", "#E69F00"
+INK, GREY, PALE = "#1a1a1a", "#6b6b6b", "#d9d9d9"
+CYCLE = (BLUE, VERMILLION, GREEN, PURPLE, ORANGE, SKY)
+DASHES = (0, (3.5, 2.0))
+
+# Shape and words of each special point. A branch point that starts whirling is WH.
+SPECIAL = {
+    "LP": ("s", "fold"), "WH": ("D", "whirling point"), "BP": ("d", "branch point"), "HB": ("o", "Hopf point"),
+    "PD": ("v", "period doubling"), "TR": ("h", "torus bifurcation"), "RP": ("P", "resonance peak"), "UZ": ("p", "user value"),
+    "unresolved": ("X", "unresolved change of stability"),
+}
+
+SYMBOLS = {
+    "omega": r"$\omega$", "omega_ratio": r"$\omega/\omega_1$", "support_motion.amplitude": r"$U$", "damping.out_of_plane": r"$\zeta_1$",
+    "damping.in_plane": r"$\zeta_2$", "cable.chord_tension": r"$T$", "cable.inclination_deg": r"$\theta$",
+    "cable.chord_length": r"$L$", "tension_max": r"$T_{\max}$",
+}
+
+
+# --- words -----------------------------------------------------------------------------------------------------------------
+
+def label(symbol, unit):
+    return symbol if unit in ("", "-") else f"{symbol} [{unit}]"
+
+
+def number(x, digits=3):
+    """A number for a sentence: 0.5, -2.70, 1.23e-12; the minus sign is a minus sign."""
+    text = f"{x:.{digits}g}"
+    return text.replace("-", "−")
+
+
+def parameter_of(result, branch):
+    name = str(result.group("study").attributes.get("continuation.parameter", "omega"))
+    if name in branch.columns:
+        return name
+    described = [c for c in branch.columns if branch.descriptions[c] == "continuation parameter"]
+    return described[0] if described else next(iter(branch.columns))
+
+
+def damping_words(out_of_plane, in_plane):
+    return rf"$\zeta_1$ = {out_of_plane:g}, $\zeta_2$ = {in_plane:g}"
+
+
+def study_words(result, kind_words):
+    """Study, support motion, damping and what is unusual about the run: the second line of every title."""
+    a = result.group("study").attributes
+    varied = str(a.get("continuation.parameter", "omega"))
+    words = [kind_words]
+    if "support_motion.amplitude" in a and varied not in ("support_motion.amplitude", "support_amplitude"):
+        words.append(rf"$U$ = {a['support_motion.amplitude']:g} m")
+    if {"damping.out_of_plane", "damping.in_plane"} <= a.keys() and not varied.startswith("damping"):
+        words.append(damping_words(a["damping.out_of_plane"], a["damping.in_plane"]))
+    if varied != "omega" and "omega" in a:
+        words.append(rf"$\omega$ = {a['omega']:g} rad/s")
+    words += [w for w in (f"{a.get('model.terms', '')} terms", f"{a.get('cable.coefficients', '')} coefficients") if w[0] != " "]
+    if a.get("outcome") != "complete":
+        words.append("partial result")
+    return ", ".join(words)
+
+
+# --- page ------------------------------------------------------------------------------------------------------------------
+
+LINE = 0.19  # inches from one line of text to the next
+
+
+class Page:
+    """A figure with a caption-like title above, a legend below and panels between."""
+
+    def __init__(self, width, panels_height, title, subtitle="", legend=(), columns=4):
+        self.width, self.legend, self.columns = width, list(legend), columns
+        self.title = textwrap.wrap(title, int(width * 13.2))
+        self.subtitle = textwrap.wrap(subtitle, int(width * 13.6), break_on_hyphens=False)
+        self.top = LINE * (len(self.title) + len(self.subtitle)) + 0.16
+        self.bottom = LINE * -(-len(self.legend) // columns) + (0.1 if self.legend else 0.0)
+        self.height = panels_height + self.top + self.bottom
+        self.figure = Figure(figsize=(width, self.height))
+        self.canvas = FigureCanvasAgg(self.figure)
+
+    def subplots(self, rows=1, columns=1, **keywords):
+        return self.figure.subplots(rows, columns, squeeze=False, **keywords)
+
+    def finish(self):
+        """Writes title and legend, lays the panels out between them."""
+        y = self.height - 0.07
+        for line in self.title:
+            self.figure.text(0.09 / self.width, y / self.height, line, va="top", fontsize=10.5, fontweight="bold", color=INK)
+            y -= LINE
+        for line in self.subtitle:
+            self.figure.text(0.09 / self.width, y / self.height, line, va="top", fontsize=9.5, color=INK)
+            y -= LINE
+        if self.legend:
+            handles = by_rows(self.legend, self.columns)
+            self.figure.legend(handles=handles, loc="lower center", ncol=self.columns, bbox_to_anchor=(0.5, 0.0), handlelength=2.4,
+                               columnspacing=1.6, labelspacing=0.35, borderaxespad=0.3)
+        self.figure.tight_layout(rect=(0, self.bottom / self.height, 1, 1 - self.top / self.height), pad=0.5, h_pad=0.9, w_pad=1.0)
+        self.canvas.draw()
+        return self.figure
+
+
+def by_rows(items, columns):
+    """A legend fills column by column; this order makes it read row by row."""
+    return [items[i] for c in range(columns) for i in range(c, len(items), columns)]
+
+
+def line_key(text, **style):
+    return Line2D([], [], label=text, **style)
+
+
+def marker_key(text, marker, **style):
+    return Line2D([], [], label=text, linestyle="none", marker=marker, **style)
+
+
+def letter(k):
+    return f"({chr(ord('a') + k)})" if k < 26 else f"({k + 1})"
+
+
+# --- branches --------------------------------------------------------------------------------------------------------------
+
+@dataclass
+class Knots:
+    """A branch with its special points sewn in at their arclength; `calm[i]`: no unstable direction between knots i and i + 1."""
+    arclength: np.ndarray
+    columns: dict
+    calm: np.ndarray
+
+    def pieces(self):
+        """Stretches of one stability, neighbours sharing the knot between them: (stable, first, last)."""
+        first = 0
+        for i in range(1, len(self.calm) + 1):
+            if i == len(self.calm) or self.calm[i] != self.calm[first]:
+                yield bool(self.calm[first]), first, i
+                first = i
+
+
+def knots_of(result, name, columns):
+    """The drawn knots of one branch: its points and its special points, in order."""
+    branch, special = result.group("branches").group(name), result.group("special_points")
+    on_branch = np.flatnonzero(special.columns["branch"] == name) if special else np.array([], dtype=int)
+    s = np.concatenate([branch.column("arclength"), special.column("arclength")[on_branch] if len(on_branch) else []])
+    order = np.argsort(s, kind="stable")
+    sewn = {}
+    for c in columns:
+        extra = special.column(c)[on_branch] if len(on_branch) else []
+        sewn[c] = np.concatenate([branch.column(c), extra])[order]
+    rows = branch.rows()
+    after = np.concatenate([branch.column("n_unstable"), special.column("unstable_after")[on_branch] if len(on_branch) else []])[order]
+    before = np.concatenate([branch.column("n_unstable"), special.column("unstable_before")[on_branch] if len(on_branch) else []])[order]
+    is_point = order >= rows
+    return Knots(s[order], sewn, calm_between(after, before, is_point))
+
+
+def calm_between(after, before, is_special):
+    """Computed points speak for the stretch beside them; between two special points the first one's `after` does."""
+    calm = np.empty(max(len(after) - 1, 0), dtype=bool)
+    for i in range(len(calm)):
+        ends = [u for u, special in ((after[i], is_special[i]), (before[i + 1], is_special[i + 1])) if not special]
+        calm[i] = all(u == 0 for u in ends) if ends else after[i] == 0
+    return calm
+
+
+def draw_branch(axes, knots, x, y, colour, width=1.6):
+    """Stable solid, unstable dashed and thinner."""
+    for stable, first, last in knots.pieces():
+        piece = slice(first, last + 1)
+        axes.plot(knots.columns[x][piece], knots.columns[y][piece], color=colour, linewidth=width if stable else 0.8 * width,
+                  linestyle="-" if stable else DASHES, zorder=3 if stable else 2.5)
+
+
+def stability_keys(colour=INK):
+    return [line_key("stable", color=colour, linewidth=1.6), line_key("unstable", color=colour, linewidth=1.3, linestyle=DASHES)]
+
+
+# --- special points --------------------------------------------------------------------------------------------------------
+
+@dataclass
+class Special:
+    name: str       # LP1, WH2: as in the file, with WH for a branch point where whirling starts
+    kind: str       # key of SPECIAL
+    branch: str
+    row: int
+
+
+def special_points(result, columns):
+    """Special points, a point on two branches once: the branch of least rows in the table keeps it."""
+    table = result.group("special_points")
+    found, places = [], []
+    for i in range(table.rows()):
+        place = np.array([table.column(c)[i] for c in columns])
+        if any(np.allclose(place, p, rtol=1e-7, atol=1e-9) for p in places):
+            continue
+        places.append(place)
+        kind, subtype = str(table.column("type")[i]), str(table.column("subtype")[i])
+        name = str(table.column("label")[i])
+        if kind == "BP" and subtype == "WH":
+            kind, name = "WH", name.replace("BP", "WH", 1)
+        found.append(Special(name, kind, str(table.column("branch")[i]), i))
+    return found
+
+
+def draw_special(axes, table, points, x, y, colour_of):
+    for p in points:
+        marker = SPECIAL.get(p.kind, SPECIAL["unresolved"])[0]
+        axes.plot(table.column(x)[p.row], table.column(y)[p.row], marker=marker, markersize=5.2, markerfacecolor="white",
+                  markeredgecolor=colour_of(p.branch), markeredgewidth=1.2, linestyle="none", zorder=6, clip_on=False)
+
+
+def special_keys(points):
+    kinds = dict.fromkeys(p.kind for p in points)
+    return [marker_key(f"{k if k in SPECIAL else ''} {SPECIAL.get(k, SPECIAL['unresolved'])[1]}".strip(),
+                       SPECIAL.get(k, SPECIAL["unresolved"])[0], markersize=5.2, markerfacecolor="white", markeredgecolor=INK,
+                       markeredgewidth=1.2) for k in kinds]
+
+
+# --- labels that keep clear ------------------------------------------------------------------------------------------------
+
+@dataclass
+class Tag:
+    """A text to stand near one of several places (data coordinates) of a panel."""
+    text: str
+    places: list
+    colour: str = INK
+    bold: bool = False
+    leader: bool = True
+
+
+def place_tags(axes, tags):
+    """Sets each text where it covers least: curves, markers, other texts and the frame are obstacles. Call after the layout."""
+    obstacles = drawn_pixels(axes)
+    frame = axes.get_window_extent()
+    boxes = [a.get_window_extent() for a in axes.texts if a.get_text()]
+    scale = axes.figure.dpi / 72
+    for tag in tags:
+        text = axes.annotate(tag.text, xy=tag.places[0], xytext=(0, 0), textcoords="offset points", color=tag.colour, fontsize=8.5,
+                             fontweight="bold" if tag.bold else "normal", ha="center", va="center", zorder=8, annotation_clip=False)
+        extent = text.get_window_extent()
+        size = np.array([extent.width, extent.height])
+        spots = candidates(axes, tag, size, scale)
+        anchor, offset, box = min(spots, key=lambda s: cost(s, obstacles, boxes, frame, scale))
+        text.xy = tag.places[anchor]
+        text.set_position(offset / scale)
+        boxes.append(box)
+        if tag.leader and np.hypot(*gap(offset, size)) > 7 * scale:
+            draw_leader(axes, tag, anchor, offset, size, scale)
+
+
+def candidates(axes, tag, size, scale):
+    """(which place, offset of the text's centre in pixels, its box) on rings about each place."""
+    for k, place in enumerate(tag.places):
+        centre = axes.transData.transform(place)
+        for clear in (4, 9, 15, 22, 30, 40, 52):
+            for angle in np.arange(0, 360, 22.5) * np.pi / 180:
+                direction = np.array([np.cos(angle), np.sin(angle)])
+                offset = direction * (0.5 * size + clear * scale)
+                low = centre + offset - 0.5 * size
+                yield k, offset, Bbox.from_bounds(*low, *size)
+
+
+def gap(offset, size):
+    """From the place to the nearest edge of the text."""
+    return np.maximum(np.abs(offset) - 0.5 * size, 0.0)
+
+
+def cost(spot, obstacles, boxes, frame, scale):
+    _, offset, box = spot
+    padded = Bbox.from_extents(box.x0 - 2 * scale, box.y0 - 1 * scale, box.x1 + 2 * scale, box.y1 + 1 * scale)
+    if padded.x0 < frame.x0 or padded.x1 > frame.x1 or padded.y0 < frame.y0 or padded.y1 > frame.y1:
+        return 1e9
+    covered = np.count_nonzero((obstacles[:, 0] > padded.x0) & (obstacles[:, 0] < padded.x1) & (obstacles[:, 1] > padded.y0)
+                               & (obstacles[:, 1] < padded.y1))
+    overlapped = sum(padded.overlaps(b) for b in boxes)
+    return 1e4 * overlapped + 40 * covered + np.hypot(*gap(offset, [box.width, box.height])) / scale
+
+
+def drawn_pixels(axes, spacing=2.0):
+    """Points every few pixels along everything plotted."""
+    points = [np.empty((0, 2))]
+    for line in axes.lines:
+        if not isinstance(line.get_transform(), type(axes.transData)) or line.get_gid() == "background":
+            continue
+        xy = axes.transData.transform(np.column_stack([np.asarray(line.get_xdata(), float), np.asarray(line.get_ydata(), float)]))
+        xy = xy[np.all(np.isfinite(xy), axis=1)]
+        if line.get_marker() not in (None, "None", ""):
+            r = 0.5 * line.get_markersize() * axes.figure.dpi / 72
+            points += [xy + [dx, dy] for dx in (-r, 0, r) for dy in (-r, 0, r)]
+        if line.get_linestyle() != "None" and len(xy) > 1:
+            for a, b in zip(xy[:-1], xy[1:]):
+                n = max(int(np.hypot(*(b - a)) / spacing), 1)
+                points.append(a + (b - a) * np.linspace(0, 1, n, endpoint=False)[:, None])
+    return np.concatenate(points)
+
+
+def draw_leader(axes, tag, anchor, offset, size, scale):
+    end = np.sign(offset) * np.minimum(np.abs(offset), gap(offset, size) - 1.0 * scale).clip(min=0)
+    axes.annotate("", xy=tag.places[anchor], xytext=end / scale, textcoords="offset points", zorder=5, annotation_clip=False,
+                  arrowprops={"arrowstyle": "-", "color": tag.colour, "linewidth": 0.6, "shrinkA": 0, "shrinkB": 3})
+
+
+def branch_tag(knots, x, y, name, colour, axes):
+    """The branch's name beside its curve, anywhere between its ends but where it sits clear."""
+    low, high = axes.get_xlim(), axes.get_ylim()
+    xs, ys = knots.columns[x], knots.columns[y]
+    inside = np.flatnonzero((xs >= low[0]) & (xs <= low[1]) & (ys >= high[0]) & (ys <= high[1]))
+    picks = inside[np.unique(np.linspace(0.12, 0.88, 14) * (len(inside) - 1)).astype(int)] if len(inside) else [0]
+    return Tag(name, [(xs[i], ys[i]) for i in picks], colour, bold=True, leader=False)
