@@ -44,6 +44,7 @@ struct Field {
   double lower, upper;
   bool closed_lower;
   bool affects_cable;  ///< statics, modes and coefficients must be computed anew
+  double example;      ///< what `whirl init` shows where there is no default: the Oresund stay
 };
 
 namespace detail {
@@ -55,16 +56,17 @@ inline constexpr double infinity = std::numeric_limits<double>::infinity();
 template <class Self, class Visit>
 void fields(Self& s, Visit&& v) {
   using detail::infinity, detail::required;
-  v(Field{"cable.chord_length", "m", "distance between the supports", required, 0.0, infinity, false, true}, s.cable.chord_length);
-  v(Field{"cable.axial_stiffness", "N", "axial stiffness AE", required, 0.0, infinity, false, true}, s.cable.axial_stiffness);
-  v(Field{"cable.chord_tension", "N", "static tension along the chord", required, 0.0, infinity, false, true}, s.cable.chord_tension);
-  v(Field{"cable.mass_per_length", "kg/m", "mass per unit length", required, 0.0, infinity, false, true}, s.cable.mass_per_length);
-  v(Field{"cable.inclination_deg", "deg", "inclination of the chord against the horizontal", 0.0, -90.0, 90.0, true, true}, s.cable.inclination_deg);
-  v(Field{"cable.gravity", "m/s^2", "acceleration of gravity", 9.81, 0.0, infinity, true, true}, s.cable.gravity);
-  v(Field{"damping.out_of_plane", "-", "damping ratio of the out-of-plane mode", 0.01, 0.0, 1.0, true, false}, s.damping_out_of_plane);
-  v(Field{"damping.in_plane", "-", "damping ratio of the in-plane mode", 0.01, 0.0, 1.0, true, false}, s.damping_in_plane);
-  v(Field{"support_motion.amplitude", "m", "amplitude U of the support motion", required, 0.0, infinity, true, false}, s.support_amplitude);
-  v(Field{"omega", "rad/s", "excitation frequency", 1.0, 0.0, infinity, false, false}, s.omega);
+  v(Field{"cable.chord_length", "m", "distance between the supports", required, 0.0, infinity, false, true, 260.0}, s.cable.chord_length);
+  v(Field{"cable.axial_stiffness", "N", "axial stiffness AE", required, 0.0, infinity, false, true, 2.17e9}, s.cable.axial_stiffness);
+  v(Field{"cable.chord_tension", "N", "static tension along the chord", required, 0.0, infinity, false, true, 5.5e6}, s.cable.chord_tension);
+  v(Field{"cable.mass_per_length", "kg/m", "mass per unit length", required, 0.0, infinity, false, true, 81.05}, s.cable.mass_per_length);
+  v(Field{"cable.inclination_deg", "deg", "inclination of the chord against the horizontal", 0.0, -90.0, 90.0, true, true, 30.4},
+    s.cable.inclination_deg);
+  v(Field{"cable.gravity", "m/s^2", "acceleration of gravity", 9.81, 0.0, infinity, true, true, 9.81}, s.cable.gravity);
+  v(Field{"damping.out_of_plane", "-", "damping ratio of the out-of-plane mode", 0.01, 0.0, 1.0, true, false, 0.01}, s.damping_out_of_plane);
+  v(Field{"damping.in_plane", "-", "damping ratio of the in-plane mode", 0.01, 0.0, 1.0, true, false, 0.01}, s.damping_in_plane);
+  v(Field{"support_motion.amplitude", "m", "amplitude U of the support motion", required, 0.0, infinity, true, false, 0.5}, s.support_amplitude);
+  v(Field{"omega", "rad/s", "excitation frequency", 1.0, 0.0, infinity, false, false, 1.65}, s.omega);
 }
 
 /// Picks one physical number (or, for `damping`, both ratios at once) of a StayParameters record as a continuation parameter.

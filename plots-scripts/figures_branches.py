@@ -20,8 +20,8 @@ def figures(result):
     x = parameter_of(result, first)
     colours = {name: CYCLE[i % len(CYCLE)] for i, name in enumerate(names)}
     points = special_points(result, [x, *columns])
-    page = Page(7.0, 2.5 * len(columns) + 0.5, f"Bifurcation diagram, {kind} study", study_words(result, f"{len(names)} branches"),
-                stability_keys() + special_keys(points))
+    page = Page(7.0, 2.5 * len(columns) + 0.5, f"Bifurcation diagram, {kind} study", [study_words(result, f"{len(names)} branches")],
+                stability_keys([result.group("branches").group(n) for n in names]) + special_keys(points))
     panels = page.subplots(len(columns), 1, sharex=True)[:, 0]
     for axes, column in zip(panels, columns):
         bifurcation_panel(axes, result, names, x, column, points, colours.get)

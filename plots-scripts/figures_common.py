@@ -1,5 +1,4 @@
 """What every figure shares: style, axis labels, stability segments, special points, labels that keep clear of each other."""
-import textwrap
 from dataclasses import dataclass
 
 import matplotlib
@@ -20,6 +19,7 @@ matplotlib.rcParams.update({
 BLUE, VERMILLION, GREEN, PURPLE, SKY, ORANGE = "#0072B2", "#D55E00", "#009E73", "#AA4499", "#56B4E9", "#E69F00"
 INK, GREY, PALE = "#1a1a1a", "#6b6b6b", "#d9d9d9"
 CYCLE = (BLUE, VERMILLION, GREEN, PURPLE, ORANGE, SKY)
+TITLE_SIZE = {"bold": 10.5, "normal": 9.5}
 DASHES = (0, (3.5, 2.0))
 
 # Shape and words of each special point. A branch point that starts whirling is WH.
@@ -37,6 +37,9 @@ SYMBOLS = {
 
 
 # --- words -----------------------------------------------------------------------------------------------------------------
+
+NB = "\u00a0"  # keeps a number and its unit on one line
+
 
 def label(symbol, unit):
     return symbol if unit in ("", "-") else f"{symbol} [{unit}]"
@@ -74,26 +77,56 @@ def study_words(result, kind_words):
     words += [w for w in (f"{a.get('model.terms', '')} terms", f"{a.get('cable.coefficients', '')} coefficients") if w[0] != " "]
     if a.get("outcome") != "complete":
         words.append("partial result")
-    return ", ".join(words)
+    return ", ".join(w.replace(" ", NB) for w in words)
 
 
 # --- page ------------------------------------------------------------------------------------------------------------------
 
 LINE = 0.19  # inches from one line of text to the next
+KEYS = {"handlelength": 2.2, "columnspacing": 1.2, "labelspacing": 0.35, "borderaxespad": 0.3}
 
 
 class Page:
-    """A figure with a caption-like title above, a legend below and panels between."""
+    """A figure with a caption-like title above (its first line bold), a legend below and panels between."""
 
-    def __init__(self, width, panels_height, title, subtitle="", legend=(), columns=4):
-        self.width, self.legend, self.columns = width, list(legend), columns
-        self.title = textwrap.wrap(title, int(width * 13.2))
-        self.subtitle = textwrap.wrap(subtitle, int(width * 13.6), break_on_hyphens=False)
-        self.top = LINE * (len(self.title) + len(self.subtitle)) + 0.16
-        self.bottom = LINE * -(-len(self.legend) // columns) + (0.1 if self.legend else 0.0)
-        self.height = panels_height + self.top + self.bottom
-        self.figure = Figure(figsize=(width, self.height))
+    def __init__(self, width, panels_height, title, sentences, legend=()):
+        self.width, self.legend = width, list(legend)
+        self.figure = Figure(figsize=(width, 1.0))
         self.canvas = FigureCanvasAgg(self.figure)
+        self.lines = [(line, "bold") for line in self.wrapped(title, "bold")]
+        self.lines += [(line, "normal") for sentence in sentences for line in self.wrapped(sentence, "normal")]
+        self.columns = self.legend_columns()
+        self.top = LINE * len(self.lines) + 0.14
+        self.bottom = LINE * -(-len(self.legend) // self.columns) + (0.1 if self.legend else 0.0)
+        self.height = panels_height + self.top + self.bottom
+        self.figure.set_size_inches(width, self.height)
+
+    def wrapped(self, sentence, weight):
+        """The sentence in lines that fit the page."""
+        lines = [""]
+        for word in sentence.split(" "):
+            longer = f"{lines[-1]} {word}".strip()
+            if lines[-1] and self.text_width(longer, weight) > self.width - 0.2:
+                lines.append(word)
+            else:
+                lines[-1] = longer
+        return lines if sentence else []
+
+    def text_width(self, text, weight):
+        probe = self.figure.text(0, 0, text, fontsize=TITLE_SIZE[weight], fontweight=weight)
+        extent = probe.get_window_extent(self.canvas.get_renderer()).width / self.figure.dpi
+        probe.remove()
+        return extent
+
+    def legend_columns(self):
+        """As many columns, up to four, as the page is wide."""
+        for columns in (4, 3, 2):
+            probe = self.figure.legend(handles=by_rows(self.legend, columns), loc="lower center", ncol=columns, **KEYS)
+            extent = probe.get_window_extent(self.canvas.get_renderer()).width / self.figure.dpi
+            probe.remove()
+            if extent < self.width - 0.1:
+                return min(columns, max(len(self.legend), 1))
+        return 1
 
     def subplots(self, rows=1, columns=1, **keywords):
         return self.figure.subplots(rows, columns, squeeze=False, **keywords)
@@ -101,17 +134,13 @@ class Page:
     def finish(self):
         """Writes title and legend, lays the panels out between them."""
         y = self.height - 0.07
-        for line in self.title:
-            self.figure.text(0.09 / self.width, y / self.height, line, va="top", fontsize=10.5, fontweight="bold", color=INK)
-            y -= LINE
-        for line in self.subtitle:
-            self.figure.text(0.09 / self.width, y / self.height, line, va="top", fontsize=9.5, color=INK)
+        for line, weight in self.lines:
+            self.figure.text(0.09 / self.width, y / self.height, line, va="top", fontsize=TITLE_SIZE[weight], fontweight=weight, color=INK)
             y -= LINE
         if self.legend:
-            handles = by_rows(self.legend, self.columns)
-            self.figure.legend(handles=handles, loc="lower center", ncol=self.columns, bbox_to_anchor=(0.5, 0.0), handlelength=2.4,
-                               columnspacing=1.6, labelspacing=0.35, borderaxespad=0.3)
-        self.figure.tight_layout(rect=(0, self.bottom / self.height, 1, 1 - self.top / self.height), pad=0.5, h_pad=0.9, w_pad=1.0)
+            self.figure.legend(handles=by_rows(self.legend, self.columns), loc="lower center", ncol=self.columns,
+                               bbox_to_anchor=(0.5, 0.0), **KEYS)
+        self.figure.tight_layout(rect=(0, self.bottom / self.height, 1, 1 - self.top / self.height), pad=0.4, h_pad=0.9, w_pad=1.0)
         self.canvas.draw()
         return self.figure
 
@@ -185,8 +214,11 @@ def draw_branch(axes, knots, x, y, colour, width=1.6):
                   linestyle="-" if stable else DASHES, zorder=3 if stable else 2.5)
 
 
-def stability_keys(colour=INK):
-    return [line_key("stable", color=colour, linewidth=1.6), line_key("unstable", color=colour, linewidth=1.3, linestyle=DASHES)]
+def stability_keys(branches, colour=INK, words=""):
+    """Solid and dashed, as far as the branches have them."""
+    unstable = np.concatenate([b.column("n_unstable") for b in branches]) > 0
+    keys = [line_key(f"{words}stable", color=colour, linewidth=1.6)] if not np.all(unstable) else []
+    return keys + ([line_key(f"{words}unstable", color=colour, linewidth=1.3, linestyle=DASHES)] if np.any(unstable) else [])
 
 
 # --- special points --------------------------------------------------------------------------------------------------------
@@ -200,7 +232,7 @@ class Special:
 
 
 def special_points(result, columns):
-    """Special points, a point on two branches once: the branch of least rows in the table keeps it."""
+    """Special points, a point on two branches once: the first branch keeps it."""
     table = result.group("special_points")
     found, places = [], []
     for i in range(table.rows()):
@@ -213,7 +245,16 @@ def special_points(result, columns):
         if kind == "BP" and subtype == "WH":
             kind, name = "WH", name.replace("BP", "WH", 1)
         found.append(Special(name, kind, str(table.column("branch")[i]), i))
-    return found
+    return told_apart(found)
+
+
+def told_apart(points):
+    """Numbers run per branch in the file: a name that two branches share gets its branch."""
+    names = [p.name for p in points]
+    for p in points:
+        if names.count(p.name) > 1:
+            p.name = f"{p.name} ({p.branch})"
+    return points
 
 
 def draw_special(axes, table, points, x, y, colour_of):
@@ -258,7 +299,7 @@ def place_tags(axes, tags):
         text.xy = tag.places[anchor]
         text.set_position(offset / scale)
         boxes.append(box)
-        if tag.leader and np.hypot(*gap(offset, size)) > 7 * scale:
+        if tag.leader and np.hypot(*gap(offset, size)) > 10 * scale:
             draw_leader(axes, tag, anchor, offset, size, scale)
 
 
@@ -281,13 +322,21 @@ def gap(offset, size):
 
 def cost(spot, obstacles, boxes, frame, scale):
     _, offset, box = spot
-    padded = Bbox.from_extents(box.x0 - 2 * scale, box.y0 - 1 * scale, box.x1 + 2 * scale, box.y1 + 1 * scale)
+    padded = Bbox.from_extents(box.x0 - 2 * scale, box.y0 - 2 * scale, box.x1 + 2 * scale, box.y1 + 2 * scale)
     if padded.x0 < frame.x0 or padded.x1 > frame.x1 or padded.y0 < frame.y0 or padded.y1 > frame.y1:
         return 1e9
     covered = np.count_nonzero((obstacles[:, 0] > padded.x0) & (obstacles[:, 0] < padded.x1) & (obstacles[:, 1] > padded.y0)
                                & (obstacles[:, 1] < padded.y1))
     overlapped = sum(padded.overlaps(b) for b in boxes)
-    return 1e4 * overlapped + 40 * covered + np.hypot(*gap(offset, [box.width, box.height])) / scale
+    return 1e4 * overlapped + 300 * crossed(spot, boxes) + 40 * covered + np.hypot(*gap(offset, np.array([box.width, box.height]))) / scale
+
+
+def crossed(spot, boxes):
+    """Other texts that a line from the place to this text would run through."""
+    _, offset, box = spot
+    centre = 0.5 * (box.p0 + box.p1)
+    way = [centre - share * offset for share in np.linspace(0, 1, 12)]
+    return sum(any(b.contains(*p) for p in way) for b in boxes)
 
 
 def drawn_pixels(axes, spacing=2.0):

@@ -365,7 +365,8 @@ void append_fields(Schema& schema, const std::function<bool(std::string_view)>& 
                 .lower = field.lower,
                 .upper = field.upper,
                 .closed_lower = field.closed_lower,
-                .closed_upper = field.closed_lower});  // both ends, see models::Field
+                .closed_upper = field.closed_lower,  // both ends, see models::Field
+                .example = std::isnan(field.default_value) ? std::optional<Value>(field.example) : std::nullopt});
   });
 }
 

@@ -72,6 +72,7 @@ Setup setup(const Configuration& c) {
   s.network = network_of(c);
   s.seed_grid = static_cast<int>(c.integer("continuation.seed_grid"));
   check_lens_range(c, s.parameter, s.network.walk);
+  (void)settle_of(c);  // complains of its keys
   if (c.numbers("orbits.damping_pairs").size() % 2 != 0) throw c.error("orbits.damping_pairs", "must hold pairs: an even number of values");
   if (!c.numbers("orbits.damping_pairs").empty() && !c.has("orbits.omega")) throw c.error("orbits.damping_pairs", "needs orbits.omega");
   return s;

@@ -1,0 +1,489 @@
+#include "models/expression.hpp"
+
+#include <fmt/format.h>
+#include <ginac/ginac.h>
+
+#include <algorithm>
+#include <charconv>
+#include <map>
+#include <mutex>
+#include <numbers>
+#include <optional>
+#include <tuple>
+
+namespace whirl::models {
+
+using Op = Step::Op;
+
+ExpressionError::ExpressionError(int equation_number, const std::string& why)
+    : std::invalid_argument(equation_number > 0 ? fmt::format("equation {}: {}", equation_number, why) : why), equation(equation_number), reason(why) {}
+
+namespace {
+
+constexpr std::size_t max_length = 20000;  // of one equation; with max_depth it keeps the recursions below far from the end of the stack
+constexpr int max_depth = 200;
+constexpr int max_whole_exponent = 1000000;
+
+struct Function {
+  std::string_view name;
+  Op op;
+};
+constexpr Function functions[] = {{"exp", Op::exp},   {"log", Op::log},   {"sin", Op::sin},   {"cos", Op::cos},   {"tan", Op::tan}, {"sinh", Op::sinh},
+                                  {"cosh", Op::cosh}, {"tanh", Op::tanh}, {"atan", Op::atan}, {"sqrt", Op::sqrt}, {"abs", Op::abs}};
+const Function* function(std::string_view name) {
+  const auto it = std::find_if(std::begin(functions), std::end(functions), [&](const Function& f) { return f.name == name; });
+  return it == std::end(functions) ? nullptr : it;
+}
+
+double apply(Op op, double x) {
+  switch (op) {
+    case Op::exp:
+      return std::exp(x);
+    case Op::log:
+      return std::log(x);
+    case Op::sin:
+      return std::sin(x);
+    case Op::cos:
+      return std::cos(x);
+    case Op::tan:
+      return std::tan(x);
+    case Op::sinh:
+      return std::sinh(x);
+    case Op::cosh:
+      return std::cosh(x);
+    case Op::tanh:
+      return std::tanh(x);
+    case Op::atan:
+      return std::atan(x);
+    case Op::sqrt:
+      return std::sqrt(x);
+    case Op::abs:
+      return std::abs(x);
+    case Op::constant:
+    case Op::add:
+    case Op::subtract:
+    case Op::multiply:
+    case Op::divide:
+    case Op::offset:
+    case Op::scale:
+    case Op::over:
+    case Op::whole_power:
+    case Op::real_power:
+      break;
+  }
+  throw std::logic_error("no function of one argument");
+}
+
+// ASCII only, whatever the locale.
+bool letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; }
+bool digit(char c) { return c >= '0' && c <= '9'; }
+
+// ---------------------------------------------------------------------------------------------------------------- text to text
+
+/// Edit distance; what a misspelt name most likely stands for, "" if nothing is near.
+std::string nearest_name(std::string_view name, const std::vector<std::string>& candidates) {
+  std::string best;
+  std::size_t least = std::max<std::size_t>(1, (name.size() + 1) / 3) + 1;
+  if (name.size() > 100) return best;
+  for (const auto& candidate : candidates) {
+    std::vector<std::size_t> row(candidate.size() + 1);
+    for (std::size_t j = 0; j < row.size(); ++j) row[j] = j;
+    for (std::size_t i = 1; i <= name.size(); ++i) {
+      std::size_t diagonal = row[0];
+      row[0] = i;
+      for (std::size_t j = 1; j < row.size(); ++j) {
+        const std::size_t replaced = diagonal + (name[i - 1] == candidate[j - 1] ? 0u : 1u);
+        diagonal = row[j];
+        row[j] = std::min({row[j] + 1, row[j - 1] + 1, replaced});
+      }
+    }
+    if (row.back() < least) {
+      least = row.back();
+      best = candidate;
+    }
+  }
+  return best;
+}
+
+/// Checks an equation token by token and writes it for GiNaC in names of our own: input i becomes v<i>, the number with index i c<i>. So GiNaC
+/// never computes with the user's numbers, whose digits it would round to decimal places and whose powers it would expand without limit, and no
+/// input is taken for one of its constants.
+class Scanner {
+ public:
+  Scanner(std::string_view text, int equation, const std::vector<std::string>& inputs, std::vector<double>& numbers)
+      : text_(text), equation_(equation), inputs_(inputs), numbers_(numbers) {}
+
+  std::string rewritten() {
+    if (text_.size() > max_length) fail(fmt::format("longer than {} characters", max_length));
+    while (skip_space(), at_ < text_.size()) {
+      const char c = text_[at_];
+      if (digit(c) || c == '.') number();
+      else if (letter(c)) name();
+      else symbol(c);
+    }
+    if (previous_ == Before::start) fail("is empty");
+    if (previous_ != Before::value) fail(fmt::format("ends with '{}' where a value must follow", shown_));
+    if (!open_.empty()) fail(fmt::format("unbalanced: {} '(' not closed", open_.size()));
+    return out_;
+  }
+
+ private:
+  enum class Before { start, open, value, operation, function };
+  struct Level {
+    bool in_exponent = false;
+  };
+
+  [[noreturn]] void fail(const std::string& reason) const { throw ExpressionError(equation_, reason); }
+  std::string where() const { return fmt::format("at character {}", at_ + 1); }
+
+  void skip_space() {
+    while (at_ < text_.size() && (text_[at_] == ' ' || text_[at_] == '\t' || text_[at_] == '\n' || text_[at_] == '\r')) ++at_;
+  }
+
+  void value(std::string_view shown, const std::string& written) {
+    if (previous_ == Before::value) fail(fmt::format("'{}' and '{}' stand side by side {}: write * between them", shown_, shown, where()));
+    if (previous_ == Before::function) fail(fmt::format("function {} needs parentheses: {}(...)", shown_, shown_));
+    out_ += written + ' ';
+    shown_ = shown;
+    previous_ = Before::value;
+  }
+
+  void number() {
+    double x = 0.0;
+    const char *first = text_.data() + at_, *last = text_.data() + text_.size();
+    const auto [end, error] = std::from_chars(first, last, x);
+    const std::string_view shown(first, static_cast<std::size_t>(std::max(end - first, std::ptrdiff_t{1})));
+    if (error == std::errc::result_out_of_range) fail(fmt::format("the number {} is out of range", shown));
+    if (error != std::errc() || (end != last && (*end == '.' || digit(*end)))) fail(fmt::format("not a number {}", where()));
+    auto known = std::find(numbers_.begin(), numbers_.end(), x);
+    if (known == numbers_.end()) known = numbers_.insert(numbers_.end(), x);
+    value(shown, fmt::format("c{}", known - numbers_.begin()));
+    at_ += static_cast<std::size_t>(end - first);
+  }
+
+  void name() {
+    std::size_t end = at_;
+    while (end < text_.size() && (letter(text_[end]) || digit(text_[end]))) ++end;
+    const std::string_view name = text_.substr(at_, end - at_);
+    const auto input = std::find(inputs_.begin(), inputs_.end(), name);
+    if (input != inputs_.end()) value(name, fmt::format("v{}", input - inputs_.begin()));
+    else if (const Function* f = function(name)) {
+      value(name, std::string(f->name));
+      previous_ = Before::function;
+    } else if (name == "pi") {
+      numbers_.push_back(std::numbers::pi);
+      value(name, fmt::format("c{}", numbers_.size() - 1));
+    } else unknown(name);
+    at_ = end;
+  }
+
+  [[noreturn]] void unknown(std::string_view name) const {
+    std::vector<std::string> known = inputs_;
+    for (const auto& f : functions) known.emplace_back(f.name);
+    const std::string near = nearest_name(name, known);
+    std::string takes;
+    for (const auto& i : inputs_) takes += (takes.empty() ? "" : ", ") + i;
+    fail(fmt::format("unknown symbol '{}'{}", name, near.empty() ? "; known are " + takes : fmt::format(", did you mean {}?", near)));
+  }
+
+  void symbol(char c) {
+    if (previous_ == Before::function && c != '(') fail(fmt::format("function {} needs parentheses: {}(...)", shown_, shown_));
+    switch (c) {
+      case '(':
+        if (previous_ == Before::value) fail(fmt::format("'{}' and '(' stand side by side {}: write * between them", shown_, where()));
+        if (static_cast<int>(open_.size()) >= max_depth) fail(fmt::format("more than {} parentheses in each other", max_depth));
+        open_.push_back(level_);
+        level_ = {};
+        previous_ = Before::open;
+        break;
+      case ')':
+        if (open_.empty()) fail(fmt::format("unbalanced: ')' {} closes nothing", where()));
+        if (previous_ != Before::value) fail(fmt::format("a value is missing before ')' {}", where()));
+        level_ = open_.back();
+        open_.pop_back();
+        break;
+      case '+':
+      case '-':
+      case '*':
+      case '/':
+      case '^':
+        operation(c);
+        break;
+      default:
+        fail(static_cast<unsigned char>(c) < 0x7f && c > ' ' ? fmt::format("'{}' {} is not understood", c, where())
+                                                             : fmt::format("a character that is not plain text {}", where()));
+    }
+    out_ += {c, ' '};
+    shown_ = text_.substr(at_, 1);
+    ++at_;
+  }
+
+  void operation(char c) {
+    const bool sign = (c == '+' || c == '-') && (previous_ == Before::start || previous_ == Before::open);
+    if (previous_ == Before::operation && (c == '+' || c == '-')) fail(fmt::format("a sign behind '{}' needs parentheses {}", shown_, where()));
+    if (previous_ != Before::value && !sign) fail(fmt::format("a value is missing before '{}' {}", c, where()));
+    if (c == '^' && level_.in_exponent) fail(fmt::format("x^y^z needs parentheses {}", where()));
+    level_.in_exponent = c == '^';
+    previous_ = Before::operation;
+  }
+
+  std::string_view text_;
+  int equation_;
+  const std::vector<std::string>& inputs_;
+  std::vector<double>& numbers_;
+  std::string out_;
+  std::size_t at_ = 0;
+  Before previous_ = Before::start;
+  std::string_view shown_;
+  Level level_;
+  std::vector<Level> open_;
+};
+
+void check_names(const std::vector<std::string>& inputs) {
+  for (std::size_t i = 0; i < inputs.size(); ++i) {
+    const std::string& name = inputs[i];
+    const bool well_formed = !name.empty() && letter(name[0]) && std::all_of(name.begin(), name.end(), [](char c) { return letter(c) || digit(c); });
+    if (!well_formed) throw ExpressionError(0, fmt::format("'{}' is no name: letters, digits and _ only, a letter first", name));
+    if (function(name)) throw ExpressionError(0, fmt::format("'{}' is the name of a function", name));
+    if (std::find(inputs.begin(), inputs.begin() + static_cast<std::ptrdiff_t>(i), name) != inputs.begin() + static_cast<std::ptrdiff_t>(i))
+      throw ExpressionError(0, fmt::format("the name '{}' is given twice", name));
+  }
+}
+
+// --------------------------------------------------------------------------------------------------------------- tree to steps
+
+/// A value while steps are written: a number known already, or a register.
+struct Operand {
+  bool known = true;
+  double number = 0.0;
+  int index = 0;
+};
+Operand fixed(double x) { return {true, x, 0}; }
+
+/// Writes steps: computes what is known at once, and nothing twice.
+class Writer {
+ public:
+  explicit Writer(int inputs) : inputs_(inputs) {}
+
+  Operand input(int i) const { return {false, 0.0, i}; }
+  Operand add(const Operand& a, const Operand& b) {
+    if (a.known && b.known) return fixed(a.number + b.number);
+    if (a.known) return add(b, a);
+    if (b.known) return b.number == 0.0 ? a : write({Op::offset, a.index, 0, b.number});
+    return write({Op::add, a.index, b.index});
+  }
+  Operand subtract(const Operand& a, const Operand& b) {
+    if (b.known) return add(a, fixed(-b.number));
+    if (a.known) return add(multiply(b, fixed(-1.0)), a);
+    return write({Op::subtract, a.index, b.index});
+  }
+  Operand multiply(const Operand& a, const Operand& b) {
+    if (a.known && b.known) return fixed(a.number * b.number);
+    if (a.known) return multiply(b, a);
+    if (b.known) return b.number == 1.0 ? a : write({Op::scale, a.index, 0, b.number});
+    return write({Op::multiply, a.index, b.index});
+  }
+  Operand divide(const Operand& a, const Operand& b) {
+    if (a.known && b.known) return fixed(a.number / b.number);
+    if (b.known) return multiply(a, fixed(1.0 / b.number));
+    if (a.known) return write({Op::over, b.index, 0, a.number});
+    return write({Op::divide, a.index, b.index});
+  }
+  Operand raise(const Operand& base, const Operand& exponent) {
+    if (base.known && exponent.known) return fixed(std::pow(base.number, exponent.number));
+    if (exponent.known) return raise(base, exponent.number);
+    if (base.known) return call(Op::exp, multiply(exponent, fixed(std::log(base.number))));
+    return call(Op::exp, multiply(exponent, call(Op::log, base)));
+  }
+  Operand call(Op op, const Operand& a) { return a.known ? fixed(apply(op, a.number)) : write({op, a.index}); }
+
+  /// The register of a result.
+  int result(const Operand& a) { return a.known ? write({Op::constant, 0, 0, a.number}).index : a.index; }
+  std::vector<Step> steps;
+
+ private:
+  Operand raise(const Operand& base, double y) {
+    if (y == 0.0) return fixed(1.0);
+    if (y == 1.0) return base;
+    if (y == 2.0) return multiply(base, base);
+    if (y == 3.0) return multiply(multiply(base, base), base);
+    if (y < 0.0) return divide(fixed(1.0), raise(base, -y));
+    if (y == 0.5) return call(Op::sqrt, base);
+    if (y == std::floor(y) && y <= max_whole_exponent) return write({Op::whole_power, base.index, static_cast<int>(y)});
+    return write({Op::real_power, base.index, 0, y});
+  }
+  Operand write(Step s) {
+    if ((s.op == Op::add || s.op == Op::multiply) && s.a > s.b) std::swap(s.a, s.b);
+    const auto [it, fresh] = known_.try_emplace({s.op, s.a, s.b, s.number}, inputs_ + static_cast<int>(steps.size()));
+    if (fresh) steps.push_back(s);
+    return {false, 0.0, it->second};
+  }
+
+  int inputs_;
+  std::map<std::tuple<Op, int, int, double>, int> known_;
+};
+
+/// GiNaC orders sums and products by addresses in memory, another order in every run: here they are sorted by their text, so that results
+/// repeat to the last digit.
+class Flattener {
+ public:
+  Flattener(Writer& writer, const std::vector<double>& numbers) : writer_(writer), numbers_(numbers) {}
+
+  Operand flatten(const GiNaC::ex& e) {
+    if (GiNaC::is_a<GiNaC::symbol>(e)) {
+      const std::string name = GiNaC::ex_to<GiNaC::symbol>(e).get_name();
+      const int index = std::stoi(name.substr(1));
+      return name[0] == 'v' ? writer_.input(index) : fixed(numbers_[static_cast<std::size_t>(index)]);
+    }
+    if (GiNaC::is_a<GiNaC::numeric>(e) && e.info(GiNaC::info_flags::real)) return fixed(GiNaC::ex_to<GiNaC::numeric>(e).to_double());
+    if (GiNaC::is_a<GiNaC::add>(e)) return sum(e);
+    if (GiNaC::is_a<GiNaC::mul>(e)) return product(e);
+    if (GiNaC::is_a<GiNaC::power>(e)) return writer_.raise(flatten(e.op(0)), flatten(e.op(1)));
+    if (GiNaC::is_a<GiNaC::function>(e))
+      if (const Function* f = function(GiNaC::ex_to<GiNaC::function>(e).get_name())) return writer_.call(f->op, flatten(e.op(0)));
+    throw std::invalid_argument("is not a real expression");
+  }
+
+ private:
+  static std::string key(const GiNaC::ex& e) {
+    std::vector<std::string> parts;
+    for (std::size_t i = 0; i < e.nops(); ++i) parts.push_back(key(e.op(i)));
+    if (!GiNaC::is_a<GiNaC::power>(e)) std::sort(parts.begin(), parts.end());
+    std::ostringstream text;
+    if (GiNaC::is_a<GiNaC::function>(e)) text << GiNaC::ex_to<GiNaC::function>(e).get_name();
+    else if (e.nops() == 0) text << e;
+    else text << (GiNaC::is_a<GiNaC::add>(e) ? '+' : GiNaC::is_a<GiNaC::mul>(e) ? '*' : '^');
+    text << '(';
+    for (const auto& part : parts) text << part << ',';
+    return text.str() + ')';
+  }
+  static std::vector<GiNaC::ex> sorted(const GiNaC::ex& e) {
+    std::vector<std::pair<std::string, GiNaC::ex>> keyed;
+    for (std::size_t i = 0; i < e.nops(); ++i) keyed.emplace_back(key(e.op(i)), e.op(i));
+    std::sort(keyed.begin(), keyed.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+    std::vector<GiNaC::ex> parts;
+    for (auto& k : keyed) parts.push_back(std::move(k.second));
+    return parts;
+  }
+
+  // Terms with the factor -1 are subtracted, factors with a negative exponent divide.
+  Operand sum(const GiNaC::ex& e) {
+    std::optional<Operand> plus, minus;
+    for (const auto& term : sorted(e)) {
+      const bool negative = GiNaC::is_a<GiNaC::mul>(term) && term.op(term.nops() - 1).is_equal(-1);
+      auto& side = negative ? minus : plus;
+      const Operand x = flatten(negative ? GiNaC::ex(-term) : term);
+      side = side ? writer_.add(*side, x) : x;
+    }
+    if (!minus) return *plus;
+    return writer_.subtract(plus ? *plus : fixed(0.0), *minus);
+  }
+  Operand product(const GiNaC::ex& e) {
+    Operand above = fixed(1.0), below = fixed(1.0), number = fixed(1.0);
+    for (const auto& factor : sorted(e)) {
+      const bool inverse = GiNaC::is_a<GiNaC::power>(factor) && factor.op(1).info(GiNaC::info_flags::negative);
+      const Operand x = inverse ? writer_.raise(flatten(factor.op(0)), flatten(-factor.op(1))) : flatten(factor);
+      if (x.known) number = inverse ? writer_.divide(number, x) : writer_.multiply(number, x);
+      else if (inverse) below = writer_.multiply(below, x);
+      else above = writer_.multiply(above, x);
+    }
+    return writer_.divide(writer_.multiply(above, number), below);
+  }
+
+  Writer& writer_;
+  const std::vector<double>& numbers_;
+};
+
+}  // namespace
+
+VectorField::VectorField(const std::vector<std::string>& equations, const std::vector<std::string>& inputs) : inputs_(static_cast<int>(inputs.size())) {
+  check_names(inputs);
+  static std::mutex one_at_a_time;  // GiNaC counts references without locks
+  const std::lock_guard lock(one_at_a_time);
+  Writer writer(inputs_);
+  for (std::size_t i = 0; i < equations.size(); ++i) {
+    const int number = static_cast<int>(i) + 1;
+    std::vector<double> numbers;
+    const std::string text = Scanner(equations[i], number, inputs, numbers).rewritten();
+    try {
+      GiNaC::symtab symbols;
+      for (int k = 0; k < inputs_; ++k) symbols[fmt::format("v{}", k)] = GiNaC::realsymbol(fmt::format("v{}", k));
+      for (std::size_t k = 0; k < numbers.size(); ++k) symbols[fmt::format("c{}", k)] = GiNaC::realsymbol(fmt::format("c{}", k));
+      GiNaC::parser reader(symbols, true);
+      const Operand r = Flattener(writer, numbers).flatten(reader(text));
+      if (r.known && !std::isfinite(r.number)) throw ExpressionError(number, "is not a finite number");
+      results_.push_back(writer.result(r));
+    } catch (const ExpressionError&) {
+      throw;
+    } catch (const GiNaC::pole_error&) {
+      throw ExpressionError(number, "divides by zero");
+    } catch (const std::exception& e) {
+      const std::string_view what(e.what());
+      throw ExpressionError(number, fmt::format("is not understood: {}", what.substr(0, what.find('\n'))));
+    }
+  }
+  steps_ = std::move(writer.steps);
+}
+
+VectorField VectorField::rebound(const std::vector<Source>& sources, int new_inputs) const {
+  if (sources.size() != static_cast<std::size_t>(inputs_)) throw std::invalid_argument("one source for each input");
+  Writer writer(new_inputs);
+  std::vector<Operand> now;
+  for (const auto& s : sources) now.push_back(std::holds_alternative<int>(s) ? writer.input(std::get<int>(s)) : fixed(std::get<double>(s)));
+  for (const Step& s : steps_) {
+    const Operand a = s.op == Op::constant ? fixed(s.number) : now[static_cast<std::size_t>(s.a)];
+    const auto b = [&] { return now[static_cast<std::size_t>(s.b)]; };
+    switch (s.op) {
+      case Op::constant:
+        now.push_back(a);
+        break;
+      case Op::add:
+        now.push_back(writer.add(a, b()));
+        break;
+      case Op::subtract:
+        now.push_back(writer.subtract(a, b()));
+        break;
+      case Op::multiply:
+        now.push_back(writer.multiply(a, b()));
+        break;
+      case Op::divide:
+        now.push_back(writer.divide(a, b()));
+        break;
+      case Op::offset:
+        now.push_back(writer.add(a, fixed(s.number)));
+        break;
+      case Op::scale:
+        now.push_back(writer.multiply(a, fixed(s.number)));
+        break;
+      case Op::over:
+        now.push_back(writer.divide(fixed(s.number), a));
+        break;
+      case Op::whole_power:
+        now.push_back(writer.raise(a, fixed(s.b)));
+        break;
+      case Op::real_power:
+        now.push_back(writer.raise(a, fixed(s.number)));
+        break;
+      case Op::exp:
+      case Op::log:
+      case Op::sin:
+      case Op::cos:
+      case Op::tan:
+      case Op::sinh:
+      case Op::cosh:
+      case Op::tanh:
+      case Op::atan:
+      case Op::sqrt:
+      case Op::abs:
+        now.push_back(writer.call(s.op, a));
+        break;
+    }
+  }
+  VectorField field;
+  field.inputs_ = new_inputs;
+  for (const int r : results_) field.results_.push_back(writer.result(now[static_cast<std::size_t>(r)]));
+  field.steps_ = std::move(writer.steps);
+  return field;
+}
+
+}  // namespace whirl::models
