@@ -85,8 +85,11 @@ void SingularSystem::update_borders(In y) {
   base_.jacobian(u_, j_);
   const Eigen::JacobiSVD<Matrix> svd(block_of(j_, block_), Eigen::ComputeFullU | Eigen::ComputeFullV);
   const int m = static_cast<int>(block_.size());
-  b_.head(m) = svd.matrixU().col(m - 1);
-  c_.head(m) = svd.matrixV().col(m - 1);
+  // Singular vectors come with any sign; keep it along a curve, so that test functions do not jump.
+  const double b_sense = svd.matrixU().col(m - 1).dot(b_.head(m)) < 0.0 ? -1.0 : 1.0,
+               c_sense = svd.matrixV().col(m - 1).dot(c_.head(m)) < 0.0 ? -1.0 : 1.0;
+  b_.head(m) = b_sense * svd.matrixU().col(m - 1);
+  c_.head(m) = c_sense * svd.matrixV().col(m - 1);
   b_[m] = c_[m] = 0.0;
 }
 
@@ -134,11 +137,11 @@ Vector SingularSystem::null_vector(In y) const {
 }
 
 Vector SingularSystem::left_null_vector(In y) const {
-  const Vector v = null_vector(y);
+  spread(y);
+  base_.jacobian(u_, j_);
+  solve_bordered();
   embed(w_.head(static_cast<int>(block_.size())), block_, full_);
-  Vector w = full_.head(base_.size()).normalized();
-  const double overlap = w.dot(v);
-  return std::abs(overlap) > 1e-8 ? Vector(w / overlap) : w;
+  return full_.head(base_.size()).normalized();
 }
 
 // -------------------------------------------------------------------------------------------------------- BranchPointSystem

@@ -57,7 +57,7 @@ class SingularSystem : public AugmentedSystem {
   Vector unknowns(In u) const override;
   void update_borders(In y) override;
   Vector null_vector(In y) const;       ///< v, size n, unit length
-  Vector left_null_vector(In y) const;  ///< w, size n, w'v = 1 where possible, else unit length
+  Vector left_null_vector(In y) const;  ///< w, size n, unit length
 
  private:
   void do_residual(In y, Out r) const override;

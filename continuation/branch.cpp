@@ -12,6 +12,10 @@ const char* to_string(EventType type) {
       return "BP";
     case EventType::hopf:
       return "HB";
+    case EventType::period_doubling:
+      return "PD";
+    case EventType::torus:
+      return "TR";
     case EventType::end:
       return "EP";
     case EventType::gave_up:
@@ -36,6 +40,8 @@ const char* to_string(StopReason reason) {
       return "symmetric_branch";
     case StopReason::known_branch_point:
       return "branch_point";
+    case StopReason::bogdanov_takens:
+      return "bogdanov_takens";
     case StopReason::max_points:
       return "max_points";
     case StopReason::min_step:
@@ -48,10 +54,10 @@ const char* to_string(StopReason reason) {
   return "?";
 }
 
-Branch::Branch(int n, bool with_spectrum, int capacity)
+Branch::Branch(int n, int spectrum_size, int capacity)
     : u_(n + 1, capacity),
       tangent_(n + 1, capacity),
-      eigenvalues_(with_spectrum ? n : 0, with_spectrum ? capacity : 0),
+      eigenvalues_(spectrum_size, spectrum_size > 0 ? capacity : 0),
       arclength_(capacity),
       residual_(capacity),
       step_(capacity),
@@ -70,6 +76,10 @@ void Branch::append(In u, In tangent, double arclength, double residual, double 
   iterations_[points_] = iterations;
   unstable_[points_] = unstable;
   ++points_;
+}
+
+void Branch::sort_special() {
+  std::stable_sort(special.begin(), special.end(), [](const SpecialPoint& a, const SpecialPoint& b) { return a.arclength < b.arclength; });
 }
 
 Branch Branch::reversed() const {
@@ -98,7 +108,7 @@ Branch Branch::reversed() const {
 Branch Branch::joined(const Branch& backward, const Branch& forward) {
   const Branch first = backward.reversed();
   const int shared = first.points() > 0 ? 1 : 0;  // the common first point stands once
-  Branch r(forward.size(), forward.has_spectrum(), first.points() - shared + forward.points());
+  Branch r(forward.size(), forward.spectrum_size(), first.points() - shared + forward.points());
   const auto copy = [&r](const Branch& b, int from, int to) {
     for (int i = from; i < to; ++i) {
       Eigen::VectorXcd e;

@@ -12,14 +12,16 @@ namespace whirl::continuation {
 
 /// Special points, in the field's letters.
 enum class EventType {
-  fold,          ///< LP
-  branch_point,  ///< BP; subtype says which ("WH" where a reflection breaks into whirling, "PF" pitchfork, "TC" transcritical)
-  hopf,          ///< HB
-  end,           ///< EP
-  gave_up,       ///< MX
-  user_value,    ///< UZ
-  peak,          ///< RP, an observable has an extremum
-  unresolved     ///< a change in the number of unstable directions that no located event explains
+  fold,             ///< LP
+  branch_point,     ///< BP; subtype says which ("WH" where a reflection breaks into whirling, "PF" pitchfork, "TC" transcritical)
+  hopf,             ///< HB
+  period_doubling,  ///< PD, a multiplier leaves through -1
+  torus,            ///< TR, a complex pair of multipliers leaves the unit circle
+  end,              ///< EP
+  gave_up,          ///< MX
+  user_value,       ///< UZ
+  peak,             ///< RP, an observable has an extremum
+  unresolved        ///< a change in the number of unstable directions that no located event explains
 };
 const char* to_string(EventType type);
 
@@ -28,6 +30,7 @@ enum class StopReason {
   closed_loop,         ///< came back to its first point
   symmetric_branch,    ///< reached a branch point on a symmetric branch; the rest is the mirror image
   known_branch_point,  ///< started at a branch point
+  bogdanov_takens,     ///< a curve of Hopf points ends: its frequency is zero
   max_points,
   min_step,  ///< the corrector failed at the smallest step
   observer,  ///< the observer asked to stop
@@ -58,11 +61,12 @@ struct SpecialPoint {
 class Branch {
  public:
   Branch() = default;
-  Branch(int n, bool with_spectrum, int capacity);
+  Branch(int n, int spectrum_size, int capacity);
 
   int points() const { return points_; }
   int capacity() const { return static_cast<int>(arclength_.size()); }
   int size() const { return static_cast<int>(u_.rows()) - 1; }
+  int spectrum_size() const { return static_cast<int>(eigenvalues_.rows()); }  ///< eigenvalues, or Floquet multipliers, of a point
   bool has_spectrum() const { return eigenvalues_.rows() > 0; }
 
   auto u(int i) const { return u_.col(i); }
@@ -76,6 +80,8 @@ class Branch {
   int n_unstable(int i) const { return unstable_[i]; }
 
   void append(In u, In tangent, double arclength, double residual, double step, int iterations, int unstable, const Eigen::VectorXcd* eigenvalues);
+  /// Special points in order of arclength.
+  void sort_special();
   void clear() {
     points_ = 0;
     special.clear();

@@ -16,6 +16,7 @@ Curve::Curve(const Problem& f, Blocks blocks, const CurveOptions& options)
       blocks_(std::move(blocks)),
       options_(options),
       spectrum_(blocks_),
+      eigenvalues_(Eigen::VectorXcd::Zero(spectrum_size(f))),
       weight_(Vector::Ones(f.size() + 1)),
       r_(f.size()),
       step_(f.size() + 1),
@@ -73,9 +74,7 @@ Curve::Report Curve::correct(Out u, In normal, In anchor) {
   }
 }
 
-bool Curve::complete(In u, In normal, Out tangent, Signature& signature) {
-  (void)u;
-  (void)normal;
+bool Curve::complete(In u, Out tangent, Signature& signature) {
   const int n = f_.size();
   rhs_.setZero();
   rhs_[n] = 1.0;
@@ -84,17 +83,24 @@ bool Curve::complete(In u, In normal, Out tangent, Signature& signature) {
   if (!std::isfinite(size) || size == 0.0) return false;
   tangent /= size;
   signature.forward = tangent[n] > 0.0;
-  if (f_.is_flow()) {
-    if (!spectrum_.compute(jacobian_)) return false;
-    for (int k = 0; k < static_cast<int>(blocks_.indices.size()); ++k) {
-      const auto slot = static_cast<std::size_t>(k);
-      signature.unstable[slot] = spectrum_.unstable(k);
-      signature.negative[slot] = (blocks_.indices[slot].size() - static_cast<std::size_t>(signature.unstable[slot])) % 2 == 1;
-    }
-    return true;
+  if (!f_.is_flow()) {
+    block_determinants(signature, signature.forward);
+    return f_.multiplier_count() == 0 || count_multipliers(u, signature);
   }
-  // det r_x = t_p det [J; t'], and the determinants of the odd blocks divide out.
-  bool all = negative_determinant(lu_) ^ (tangent[n] < 0.0);
+  if (!spectrum_.compute(jacobian_)) return false;
+  eigenvalues_ = spectrum_.eigenvalues();
+  for (int k = 0; k < static_cast<int>(blocks_.indices.size()); ++k) {
+    const auto slot = static_cast<std::size_t>(k);
+    lead_[slot] = spectrum_.lead(k);
+    signature.unstable[slot] = spectrum_.unstable(k);
+    signature.negative[slot] = (blocks_.indices[slot].size() - static_cast<std::size_t>(signature.unstable[slot])) % 2 == 1;
+  }
+  return true;
+}
+
+// det r_x = t_p det [J; t'], and the determinants of the odd blocks divide out.
+void Curve::block_determinants(Signature& signature, bool forward) {
+  bool all = negative_determinant(lu_) ^ !forward;
   for (std::size_t k = 1; k < blocks_.indices.size(); ++k) {
     const auto& indices = blocks_.indices[k];
     for (std::size_t c = 0; c < indices.size(); ++c)
@@ -104,6 +110,18 @@ bool Curve::complete(In u, In normal, Out tangent, Signature& signature) {
     all ^= signature.negative[k];
   }
   signature.negative[0] = all;
+}
+
+bool Curve::count_multipliers(In u, Signature& signature) {
+  if (!f_.multipliers(u, eigenvalues_) || !eigenvalues_.allFinite()) return false;
+  signature.unstable[0] = signature.flips = 0;
+  lead_[0] = std::numeric_limits<double>::infinity();
+  for (const auto& mu : eigenvalues_) {
+    const double excess = std::abs(mu) - 1.0;
+    if (excess > 0.0) ++signature.unstable[0];
+    if (excess > 0.0 && mu.imag() == 0.0 && mu.real() < 0.0) ++signature.flips;
+    if (std::abs(excess) < std::abs(lead_[0])) lead_[0] = excess;
+  }
   return true;
 }
 
@@ -111,11 +129,10 @@ bool Curve::sample(In guess, In normal, Sample& out) {
   out.u = guess;
   const Report report = correct(out.u, normal, guess);
   out.tangent.resize(f_.size() + 1);
-  if (!report.ok || !complete(out.u, normal, out.tangent, out.signature)) return false;
+  if (!report.ok || !complete(out.u, out.tangent, out.signature)) return false;
   out.residual = report.residual;
   out.iterations = report.iterations;
-  if (f_.is_flow())
-    for (int k = 0; k < static_cast<int>(blocks_.indices.size()); ++k) out.lead[static_cast<std::size_t>(k)] = spectrum_.lead(k);
+  out.lead = lead_;
   return true;
 }
 

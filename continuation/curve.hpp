@@ -14,11 +14,13 @@
 namespace whirl::continuation {
 
 /// What can change at a special point: the sense of the parameter, and per block the number of unstable directions and the sign of det r_x.
+/// Multipliers of a periodic motion are counted together, in slot 0 of `unstable`, those below -1 also in `flips`.
 struct Signature {
   static constexpr int max_blocks = 8;
   bool forward = true;  ///< parameter increases along the tangent
   std::array<int, max_blocks> unstable{};
   std::array<bool, max_blocks> negative{};  ///< det of the block < 0
+  int flips = 0;                            ///< real multipliers < -1
   bool operator==(const Signature&) const = default;
 };
 
@@ -27,7 +29,7 @@ struct Sample {
   Signature signature;
   double residual = 0.0;
   int iterations = 0;
-  std::array<double, Signature::max_blocks> lead{};  ///< per block, real part nearest zero (0 if not a flow)
+  std::array<double, Signature::max_blocks> lead{};  ///< per block, real part nearest zero; slot 0 of a periodic motion: |mu| - 1 nearest zero
 };
 
 struct CurveOptions {
@@ -59,10 +61,13 @@ class Curve {
 
   /// Newton onto the curve within the plane through `anchor` normal to `normal`. On success the Jacobian at u is kept for `complete`.
   Report correct(Out u, In normal, In anchor);
-  /// Tangent (positive along `normal`), eigenvalues and signature at the point just corrected. False if singular or non-finite.
-  bool complete(In u, In normal, Out tangent, Signature& signature);
+  /// Tangent (positive along the normal of `correct`), spectrum and signature at the point just corrected. False if singular or non-finite.
+  bool complete(In u, Out tangent, Signature& signature);
 
-  const Spectrum& spectrum() const { return spectrum_; }
+  /// Eigenvalues of r_x or Floquet multipliers at the point last completed; empty if the problem has neither.
+  const Eigen::VectorXcd& eigenvalues() const { return eigenvalues_; }
+  double lead(int block) const { return lead_[static_cast<std::size_t>(block)]; }
+  static int spectrum_size(const Problem& f) { return f.multiplier_count() > 0 ? f.multiplier_count() : f.is_flow() ? f.size() : 0; }
   const Matrix& jacobian() const { return jacobian_; }
 
   /// Corrected and completed point near `guess`, in the plane through it normal to `normal`.
@@ -71,10 +76,15 @@ class Curve {
   bool between(const Sample& a, const Sample& b, double sigma, Sample& out);
 
  private:
+  void block_determinants(Signature& signature, bool forward);
+  bool count_multipliers(In u, Signature& signature);
+
   const Problem& f_;
   Blocks blocks_;
   CurveOptions options_;
   Spectrum spectrum_;
+  Eigen::VectorXcd eigenvalues_;
+  std::array<double, Signature::max_blocks> lead_{};
   Vector weight_, r_, step_, rhs_;
   Matrix jacobian_, bordered_;
   Eigen::PartialPivLU<Matrix> lu_;

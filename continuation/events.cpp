@@ -14,9 +14,9 @@ double fraction(const Curve& curve, const Sample& a, const Sample& b, In u) {
   return curve.dot(chord, u - a.u) / curve.dot(chord, chord);
 }
 
-int unstable_pairs(const Spectrum& spectrum) {
+int unstable_pairs(const Eigen::VectorXcd& eigenvalues) {
   int count = 0;
-  for (const auto& z : spectrum.eigenvalues()) count += z.real() > 0.0 && z.imag() > 0.0 ? 1 : 0;
+  for (const auto& z : eigenvalues) count += z.real() > 0.0 && z.imag() > 0.0 ? 1 : 0;
   return count;
 }
 
@@ -41,22 +41,30 @@ int EventFinder::total_unstable(const Signature& s) const {
 
 std::vector<EventFinder::Kind> EventFinder::changes(const Signature& a, const Signature& b) const {
   std::vector<Kind> kinds;
-  const bool fold = a.forward != b.forward;
+  const bool fold = a.forward != b.forward, periodic = curve_.problem().multiplier_count() > 0;
   if (fold) kinds.push_back({EventType::fold, 0});
   for (int k = 0; k < static_cast<int>(curve_.blocks().indices.size()); ++k) {
     const auto slot = static_cast<std::size_t>(k);
     const bool turned = a.negative[slot] != b.negative[slot];
     if (k == 0 ? turned != fold : turned) kinds.push_back({EventType::branch_point, k});
     const int pairs = (std::abs(b.unstable[slot] - a.unstable[slot]) - (turned ? 1 : 0)) / 2;
-    if (pairs > 0) kinds.push_back({EventType::hopf, k});
+    if (pairs > 0 && !periodic) kinds.push_back({EventType::hopf, k});
+  }
+  if (periodic) {  // multipliers leave through +1 (above), -1, or in pairs
+    if ((b.flips - a.flips) % 2 != 0) kinds.push_back({EventType::period_doubling, 0});
+    if (std::abs(b.unstable[0] - a.unstable[0]) >= static_cast<int>(kinds.size()) + 2) kinds.push_back({EventType::torus, 0});
   }
   return kinds;
 }
 
-std::vector<SpecialPoint> EventFinder::find(const Sample& before, const Sample& a, const Sample& b) {
+std::vector<SpecialPoint> EventFinder::find(const Sample& before, const Sample& a, const Sample& b, bool last) {
   found_.clear();
   if (!changes(a.signature, b.signature).empty()) explain(a, b, 0);
-  else look_closer(before, a, b, 0);
+  else if (last) look_closer(before, a, b, 0);
+  else if (turns_at(before, a, b)) {
+    look_closer(b, before, a, 0);  // b only tells how much things moved
+    look_closer(before, a, b, 0);
+  }
   std::sort(found_.begin(), found_.end(), [&](const auto& p, const auto& q) { return fraction(curve_, a, b, p.u) < fraction(curve_, a, b, q.u); });
   return found_;
 }
@@ -88,6 +96,18 @@ void EventFinder::report_unresolved(const Sample& a, const Sample& b) {
   p.unstable_before = total_unstable(a.signature);
   p.unstable_after = total_unstable(b.signature);
   found_.push_back(p);
+}
+
+// Does something that decides over events come nearer to zero and recede again, nearer than it moved?
+bool EventFinder::turns_at(const Sample& before, const Sample& a, const Sample& b) const {
+  const auto turns = [](double past, double from, double to) {
+    const double p = std::abs(past), f = std::abs(from), t = std::abs(to);
+    return f <= p && f <= t && f < std::max(std::abs(from - past), std::abs(to - from)) && past * from > 0.0 && from * to > 0.0;
+  };
+  const int n = curve_.problem().size();
+  bool found = turns(before.tangent[n], a.tangent[n], b.tangent[n]);
+  for (std::size_t k = 0; k < curve_.blocks().indices.size() && !found; ++k) found = turns(before.lead[k], a.lead[k], b.lead[k]);
+  return found;
 }
 
 void EventFinder::look_closer(const Sample& before, const Sample& a, const Sample& b, int depth) {
@@ -140,6 +160,7 @@ bool EventFinder::locate(const Kind& kind, const Sample& a, const Sample& b, Spe
     const auto list = changes(s, t);
     return std::any_of(list.begin(), list.end(), [&](const Kind& k) { return k.type == kind.type && k.block == kind.block; });
   };
+  const bool has_system = curve_.problem().derivatives() >= 2 && kind.type != EventType::period_doubling && kind.type != EventType::torus;
   Sample lo = a, hi = b, middle;
   double from = 0.0, to = 1.0;
   for (int i = 0; i < 48; ++i) {
@@ -149,7 +170,7 @@ bool EventFinder::locate(const Kind& kind, const Sample& a, const Sample& b, Spe
     part = std::clamp(part, 0.05, 0.95);
     const double sigma = from + part * (to - from);
     if (!curve_.between(a, b, sigma, middle)) return false;
-    if (curve_.problem().derivatives() >= 2 && (i < 3 || i % 6 == 0) && solve(kind, middle, out) && inside(out)) return true;
+    if (has_system && (i < 3 || i % 6 == 0) && solve(kind, middle, out) && inside(out)) return true;
     if (has(lo.signature, middle.signature)) {
       hi = middle;
       to = sigma;
@@ -160,19 +181,21 @@ bool EventFinder::locate(const Kind& kind, const Sample& a, const Sample& b, Spe
     const double width = curve_.length(hi.u - lo.u);
     if (width < 1e-13 || to - from < 1e-13) break;
   }
-  if (curve_.problem().derivatives() >= 2) return false;
-  // No second derivatives on offer: the narrowed bracket is the answer.
+  if (has_system) return false;
+  // No system of its own (no second derivatives on offer, or a multiplier away from +1): the narrowed bracket is the answer.
   out = {};
   out.type = kind.type;
   out.block = kind.block;
   out.u = middle.u;
   out.tangent = middle.tangent;
   out.residual = middle.residual;
+  out.subtype = kind.type == EventType::branch_point ? curve_.blocks().subtype[static_cast<std::size_t>(kind.block)] : "";
   return true;
 }
 
 bool EventFinder::solve(const Kind& kind, const Sample& near, SpecialPoint& out) {
   const Problem& f = curve_.problem();
+  if (f.derivatives() < 2) return false;
   const Blocks& blocks = curve_.blocks();
   const Indices state = block_or_empty(blocks, 0), block = block_or_empty(blocks, kind.block);
   std::unique_ptr<AugmentedSystem> system;
@@ -188,6 +211,8 @@ bool EventFinder::solve(const Kind& kind, const Sample& near, SpecialPoint& out)
     case EventType::hopf:
       system = std::make_unique<HopfSystem>(f, state, block, near.u);
       break;
+    case EventType::period_doubling:
+    case EventType::torus:
     case EventType::end:
     case EventType::gave_up:
     case EventType::user_value:
@@ -223,9 +248,9 @@ bool EventFinder::accept(const Kind& kind, const Sample& a, const Sample& b, Spe
     Sample left, right;
     const Vector offset = (delta / unit) * chord;
     if (!curve_.sample(point.u - offset, chord, left)) continue;
-    const int pairs_left = unstable_pairs(curve_.spectrum());
+    const int pairs_left = unstable_pairs(curve_.eigenvalues());
     if (!curve_.sample(point.u + offset, chord, right)) continue;
-    const int pairs_right = unstable_pairs(curve_.spectrum());
+    const int pairs_right = unstable_pairs(curve_.eigenvalues());
     const auto shown = changes(left.signature, right.signature);
     const auto same = [&](const Kind& k) { return k.type == kind.type && k.block == kind.block; };
     const auto is_hopf = [](const Kind& k) { return k.type == EventType::hopf; };

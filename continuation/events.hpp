@@ -25,8 +25,10 @@ class EventFinder {
  public:
   EventFinder(Curve& curve, const EventOptions& options) : curve_(curve), options_(options) {}
 
-  /// Special points strictly between a and b in order; `before` is the accepted point before a (or a itself).
-  std::vector<SpecialPoint> find(const Sample& before, const Sample& a, const Sample& b);
+  /// Special points strictly between a and b in order; `before` is the accepted point before a (or a itself). Where nothing changed but something
+  /// turned round at a near zero, the steps on both sides of a are searched. `last`: no further point will show a turn at b, so look now.
+  std::vector<SpecialPoint> find(const Sample& before, const Sample& a, const Sample& b, bool last = false);
+  bool turns_at(const Sample& before, const Sample& a, const Sample& b) const;
 
   /// The branch point on the symmetric branch that lies between a and b if reflection `r` of the problem changes the sign of a state's odd part.
   bool mirror_crossing(const Sample& a, const Sample& b, int r, SpecialPoint& out);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <map>
 
+#include "continuation/normal_form.hpp"
 #include "continuation/switching.hpp"
 #include "core/newton.hpp"
 
@@ -93,6 +94,7 @@ void Network::adopt(Branch branch, int generation) {
   for (const auto& b : branches_)
     if (b.name.starts_with(prefix) && b.name.find_first_not_of("0123456789", prefix.size()) == std::string::npos) ++number;
   branch.name = fmt::format("{}{}", prefix, number);
+  for (auto& s : branch.special) set_normal_form(problem_, s);
   const int index = static_cast<int>(branches_.size());
   int count = 0;
   for (auto& s : branch.special) {

@@ -24,11 +24,15 @@ void WalkOptions::validate() const {
 // Everything the loop touches, allocated once per walk.
 struct Walker::State {
   State(const Problem& f, Blocks blocks, const WalkOptions& o)
-      : curve(f, std::move(blocks), o.corrector), finder(curve, o.events), branch(f.size(), f.is_flow(), o.max_points), step(o.initial_step) {
+      : curve(f, std::move(blocks), o.corrector),
+        finder(curve, o.events),
+        branch(f.size(), Curve::spectrum_size(f), o.max_points),
+        step(o.initial_step) {
     for (auto* p : {&now, &before, &next}) {
       p->u = Vector::Zero(f.size() + 1);
       p->tangent = Vector::Zero(f.size() + 1);
     }
+    eigenvalues = Eigen::VectorXcd::Zero(Curve::spectrum_size(f));
     predicted = bend = start_u = start_tangent = Vector::Zero(f.size() + 1);
   }
   Curve curve;
@@ -36,6 +40,7 @@ struct Walker::State {
   Branch branch;
   Sample before, now, next;
   Vector predicted, bend, start_u, start_tangent;
+  Eigen::VectorXcd eigenvalues;  // of `next`, kept while events are looked for
   Curve::Report report;
   double step, step_taken = 0.0, arclength = 0.0, largest_x = 0.0;
   double factor = 1.0;  // by which the next step may change
@@ -81,6 +86,7 @@ Branch Walker::walk_from(const Vector& u0, const Vector& direction, bool from_br
     lengthen_step();
   }
   s_->branch.stop_reason = s_->stop;
+  s_->branch.sort_special();
   return std::move(s_->branch);
 }
 
@@ -105,19 +111,18 @@ bool Walker::begin(const Vector& u0, const Vector& direction, bool from_branch_p
     Vector r(n);
     problem_.residual(u0, r);
     s.now.residual = r.lpNorm<Eigen::Infinity>();
-    Eigen::VectorXcd spectrum = Eigen::VectorXcd::Zero(n);
+    // the critical one is neutral here up to rounding: do not count it
     int unstable = 0;
     if (problem_.is_flow()) {
       Matrix j(n, n + 1);
       problem_.jacobian(u0, j);
       Spectrum eigen(s.curve.blocks());
-      if (eigen.compute(j)) {
-        spectrum = eigen.eigenvalues();
-        // the critical one is zero here up to rounding: do not count it
-        for (const auto& z : spectrum) unstable += z.real() > 1e-8 * (1.0 + std::abs(z)) ? 1 : 0;
-      }
+      if (eigen.compute(j)) s.eigenvalues = eigen.eigenvalues();
+      for (const auto& z : s.eigenvalues) unstable += z.real() > 1e-8 * (1.0 + std::abs(z)) ? 1 : 0;
+    } else if (problem_.multiplier_count() > 0 && problem_.multipliers(u0, s.eigenvalues)) {
+      for (const auto& mu : s.eigenvalues) unstable += std::abs(mu) > 1.0 + 1e-8 ? 1 : 0;
     }
-    s.branch.append(s.now.u, s.now.tangent, 0.0, s.now.residual, 0.0, 0, unstable, &spectrum);
+    s.branch.append(s.now.u, s.now.tangent, 0.0, s.now.residual, 0.0, 0, unstable, &s.eigenvalues);
     s.branch.start_reason = StopReason::known_branch_point;
   } else {
     const Vector normal = direction;
@@ -130,7 +135,7 @@ bool Walker::begin(const Vector& u0, const Vector& direction, bool from_branch_p
     s.has_signature = true;
     int unstable = 0;
     for (int count : s.now.signature.unstable) unstable += count;
-    s.branch.append(s.now.u, s.now.tangent, 0.0, s.now.residual, 0.0, s.now.iterations, unstable, &s.curve.spectrum().eigenvalues());
+    s.branch.append(s.now.u, s.now.tangent, 0.0, s.now.residual, 0.0, s.now.iterations, unstable, &s.curve.eigenvalues());
   }
   s.before = s.now;
   s.start_u = s.now.u;
@@ -159,7 +164,7 @@ bool Walker::correct() {
   const double beyond = s.next.u[n] - std::clamp(s.next.u[n], options_.lower, options_.upper);
   if (beyond != 0.0) {
     if (!reach_bound()) return false;
-  } else if (!s.curve.complete(s.next.u, s.now.tangent, s.next.tangent, s.next.signature)) {
+  } else if (!s.curve.complete(s.next.u, s.next.tangent, s.next.signature)) {
     return false;
   }
   // A jump into a symmetric branch is no step along this one.
@@ -182,8 +187,8 @@ bool Walker::correct() {
   s.factor = std::clamp(std::max({by_angle, by_contraction, by_distance}), 0.5, 2.0);
   if (angle > limit && !first_off_branch_point && s.step > 4.0 * options_.min_step) return false;
   s.step_taken = s.curve.length(s.next.u - s.now.u);
-  for (std::size_t k = 0; k < s.curve.blocks().indices.size(); ++k)
-    s.next.lead[k] = problem_.is_flow() ? s.curve.spectrum().lead(static_cast<int>(k)) : 0.0;
+  for (std::size_t k = 0; k < s.curve.blocks().indices.size(); ++k) s.next.lead[k] = s.curve.lead(static_cast<int>(k));
+  s.eigenvalues = s.curve.eigenvalues();
   s.next.residual = s.report.residual;
   s.next.iterations = s.report.iterations;
   return true;
@@ -202,7 +207,7 @@ bool Walker::reach_bound() {
   s.report = s.curve.correct(s.next.u, s.bend, s.predicted);
   if (!s.report.ok || s.curve.length(s.next.u - s.now.u) > 2.0 * s.step) return false;
   s.next.u[n] = bound;
-  if (!s.curve.complete(s.next.u, s.bend, s.next.tangent, s.next.signature)) return false;
+  if (!s.curve.complete(s.next.u, s.next.tangent, s.next.signature)) return false;
   s.stop = StopReason::parameter_bound;
   return true;
 }
@@ -242,20 +247,14 @@ void Walker::locate_events() {
     s.stop = StopReason::symmetric_branch;
     return;
   }
-  const bool same = s.now.signature == s.next.signature;
-  bool near = false;  // the cheap half of EventFinder::look_closer, so that quiet steps cost nothing
-  if (same) {
-    const auto moved_more_than_left = [](double past, double from, double to) {
-      return std::min(std::abs(from), std::abs(to)) < std::max(std::abs(from - past), std::abs(to - from));
-    };
-    const int n = problem_.size();
-    near = moved_more_than_left(s.before.tangent[n], s.now.tangent[n], s.next.tangent[n]);
-    for (std::size_t k = 0; k < s.curve.blocks().indices.size() && !near; ++k)
-      near = moved_more_than_left(s.before.lead[k], s.now.lead[k], s.next.lead[k]) && problem_.is_flow();
-  }
-  if (!same || near)
-    for (auto& e : s.finder.find(s.before, s.now, s.next)) {
-      e.arclength = s.arclength + s.curve.length(e.u - s.now.u);
+  // At either end of the walk there is no point beyond that would show a turn.
+  const int first = s.branch.start_reason == StopReason::known_branch_point ? 1 : 0;
+  const bool last = s.stop != StopReason::none || s.accepted == first;
+  if (last || !(s.now.signature == s.next.signature) || s.finder.turns_at(s.before, s.now, s.next))
+    for (auto& e : s.finder.find(s.before, s.now, s.next, last)) {
+      const Vector from_now = e.u - s.now.u;
+      const bool behind = s.curve.dot(from_now, s.next.u - s.now.u) < 0.0;
+      e.arclength = s.arclength + (behind ? -1.0 : 1.0) * s.curve.length(from_now);
       s.branch.special.push_back(std::move(e));
     }
   find_peaks_and_values();
@@ -320,18 +319,7 @@ void Walker::accept() {
   int unstable = 0;
   for (int count : s.next.signature.unstable) unstable += count;
   s.arclength += s.step_taken;
-  // Events may have left another point's eigenvalues behind; they are few, so recompute only then.
-  if (problem_.is_flow() && s.stop != StopReason::symmetric_branch && !s.branch.special.empty() &&
-      s.branch.special.back().arclength > s.arclength - s.step_taken) {
-    s.bend = s.next.u;
-    Matrix j(n, n + 1);
-    problem_.jacobian(s.bend, j);
-    Spectrum eigen(s.curve.blocks());
-    if (eigen.compute(j))
-      s.branch.append(s.next.u, s.next.tangent, s.arclength, s.next.residual, s.step, s.next.iterations, unstable, &eigen.eigenvalues());
-  } else {
-    s.branch.append(s.next.u, s.next.tangent, s.arclength, s.next.residual, s.step, s.next.iterations, unstable, &s.curve.spectrum().eigenvalues());
-  }
+  s.branch.append(s.next.u, s.next.tangent, s.arclength, s.next.residual, s.step, s.next.iterations, unstable, &s.eigenvalues);
   std::swap(s.before, s.now);
   std::swap(s.now, s.next);
   if (!s.has_signature) s.before = s.now;
@@ -372,7 +360,7 @@ bool Walker::close_loop() {
   s.arclength += s.curve.length(s.start_u - s.now.u);
   int unstable = 0;
   for (int count : at.signature.unstable) unstable += count;
-  s.branch.append(s.start_u, s.start_tangent, s.arclength, at.residual, s.step, at.iterations, unstable, &s.curve.spectrum().eigenvalues());
+  s.branch.append(s.start_u, s.start_tangent, s.arclength, at.residual, s.step, at.iterations, unstable, &s.curve.eigenvalues());
   // What lies behind the first point was found by the first step.
   std::erase_if(s.branch.special, [&s](const SpecialPoint& e) { return e.arclength > s.arclength; });
   s.stop = StopReason::closed_loop;

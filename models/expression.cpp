@@ -105,7 +105,7 @@ std::string nearest_name(std::string_view name, const std::vector<std::string>& 
   return best;
 }
 
-/// Checks an equation token by token and writes it for GiNaC in names of our own: input i becomes v<i>, the number with index i c<i>. So GiNaC
+/// Checks an equation token by token and writes it for GiNaC in names of our own: input 3 becomes v00003, number 3 c3. So GiNaC
 /// never computes with the user's numbers, whose digits it would round to decimal places and whose powers it would expand without limit, and no
 /// input is taken for one of its constants.
 class Scanner {
@@ -166,7 +166,7 @@ class Scanner {
     while (end < text_.size() && (letter(text_[end]) || digit(text_[end]))) ++end;
     const std::string_view name = text_.substr(at_, end - at_);
     const auto input = std::find(inputs_.begin(), inputs_.end(), name);
-    if (input != inputs_.end()) value(name, fmt::format("v{}", input - inputs_.begin()));
+    if (input != inputs_.end()) value(name, fmt::format("v{:05}", input - inputs_.begin()));
     else if (const Function* f = function(name)) {
       value(name, std::string(f->name));
       previous_ = Before::function;
@@ -313,6 +313,7 @@ class Writer {
     return write({Op::real_power, base.index, 0, y});
   }
   Operand write(Step s) {
+    if (!std::isfinite(s.number)) throw std::domain_error("is not a finite number");
     if ((s.op == Op::add || s.op == Op::multiply) && s.a > s.b) std::swap(s.a, s.b);
     const auto [it, fresh] = known_.try_emplace({s.op, s.a, s.b, s.number}, inputs_ + static_cast<int>(steps.size()));
     if (fresh) steps.push_back(s);
@@ -324,7 +325,7 @@ class Writer {
 };
 
 /// GiNaC orders sums and products by addresses in memory, another order in every run: here they are sorted by their text, so that results
-/// repeat to the last digit.
+/// repeat to the last digit. Last inputs come first: parameters fixed later meet before a variable joins them.
 class Flattener {
  public:
   Flattener(Writer& writer, const std::vector<double>& numbers) : writer_(writer), numbers_(numbers) {}
@@ -360,7 +361,7 @@ class Flattener {
   static std::vector<GiNaC::ex> sorted(const GiNaC::ex& e) {
     std::vector<std::pair<std::string, GiNaC::ex>> keyed;
     for (std::size_t i = 0; i < e.nops(); ++i) keyed.emplace_back(key(e.op(i)), e.op(i));
-    std::sort(keyed.begin(), keyed.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+    std::sort(keyed.begin(), keyed.end(), [](const auto& a, const auto& b) { return a.first > b.first; });
     std::vector<GiNaC::ex> parts;
     for (auto& k : keyed) parts.push_back(std::move(k.second));
     return parts;
@@ -407,16 +408,15 @@ VectorField::VectorField(const std::vector<std::string>& equations, const std::v
     const std::string text = Scanner(equations[i], number, inputs, numbers).rewritten();
     try {
       GiNaC::symtab symbols;
-      for (int k = 0; k < inputs_; ++k) symbols[fmt::format("v{}", k)] = GiNaC::realsymbol(fmt::format("v{}", k));
+      for (int k = 0; k < inputs_; ++k) symbols[fmt::format("v{:05}", k)] = GiNaC::realsymbol(fmt::format("v{:05}", k));
       for (std::size_t k = 0; k < numbers.size(); ++k) symbols[fmt::format("c{}", k)] = GiNaC::realsymbol(fmt::format("c{}", k));
       GiNaC::parser reader(symbols, true);
       const Operand r = Flattener(writer, numbers).flatten(reader(text));
-      if (r.known && !std::isfinite(r.number)) throw ExpressionError(number, "is not a finite number");
       results_.push_back(writer.result(r));
-    } catch (const ExpressionError&) {
-      throw;
     } catch (const GiNaC::pole_error&) {
       throw ExpressionError(number, "divides by zero");
+    } catch (const std::domain_error& e) {
+      throw ExpressionError(number, e.what());
     } catch (const std::exception& e) {
       const std::string_view what(e.what());
       throw ExpressionError(number, fmt::format("is not understood: {}", what.substr(0, what.find('\n'))));
@@ -425,7 +425,7 @@ VectorField::VectorField(const std::vector<std::string>& equations, const std::v
   steps_ = std::move(writer.steps);
 }
 
-VectorField VectorField::rebound(const std::vector<Source>& sources, int new_inputs) const {
+VectorField VectorField::rebound(const std::vector<Source>& sources, int new_inputs) const try {
   if (sources.size() != static_cast<std::size_t>(inputs_)) throw std::invalid_argument("one source for each input");
   Writer writer(new_inputs);
   std::vector<Operand> now;
@@ -484,6 +484,8 @@ VectorField VectorField::rebound(const std::vector<Source>& sources, int new_inp
   for (const int r : results_) field.results_.push_back(writer.result(now[static_cast<std::size_t>(r)]));
   field.steps_ = std::move(writer.steps);
   return field;
+} catch (const std::domain_error&) {
+  throw std::invalid_argument("the equations are not finite at these parameters, whatever the variables");
 }
 
 }  // namespace whirl::models

@@ -117,7 +117,10 @@ SteadyMotion settle(const ModalSystem<double>& system, const Vector& y0, const S
       const double left = e / (1.0 - std::pow(rate, m));
       last[slot] = e;
       calm[slot] = left < limit || e < 1e-3 * limit ? calm[slot] + 1 : 0;
-      if (calm[slot] >= 2 * m + 1) {
+      // Of an m that is calm, a divisor nearly so may be the true period that only settles more slowly: wait for it.
+      bool shorter = false;
+      for (int d = 1; d < m; ++d) shorter = shorter || (m % d == 0 && last[static_cast<std::size_t>(d)] < 1e3 * limit);
+      if (calm[slot] >= 2 * m + 1 && !shorter) {
         motion.multiple = m;
         motion.distance = e;
         break;

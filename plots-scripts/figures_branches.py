@@ -1,5 +1,5 @@
-"""Bifurcation diagram of any result with branches: the first amplitudes against the parameter. The kinds without figures of their own
-are drawn by it, and the kinds with figures build on its panel."""
+"""Bifurcation diagram of any result with branches: the first amplitudes against the parameter. It draws the kinds that have no
+figures of their own; the others build on its panel."""
 import numpy as np
 
 from figures_common import (CYCLE, GREY, Page, SYMBOLS, Tag, branch_tag, draw_branch, draw_special, knots_of, label, parameter_of,
@@ -20,8 +20,9 @@ def figures(result):
     x = parameter_of(result, first)
     colours = {name: CYCLE[i % len(CYCLE)] for i, name in enumerate(names)}
     points = special_points(result, [x, *columns])
-    page = Page(7.0, 2.5 * len(columns) + 0.5, f"Bifurcation diagram, {kind} study", [study_words(result, f"{len(names)} branches")],
-                stability_keys([result.group("branches").group(n) for n in names]) + special_keys(points))
+    keys = stability_keys([result.group("branches").group(n) for n in names]) + special_keys(points)
+    sentence = study_words(result, f"{len(names)} branch{'es' if len(names) > 1 else ''}")
+    page = Page(7.0, 2.5 * len(columns) + 0.5, f"Bifurcation diagram, {kind} study", [sentence], keys)
     panels = page.subplots(len(columns), 1, sharex=True)[:, 0]
     for axes, column in zip(panels, columns):
         bifurcation_panel(axes, result, names, x, column, points, colours.get)

@@ -9,7 +9,7 @@ from matplotlib.lines import Line2D
 from matplotlib.transforms import Bbox
 
 matplotlib.rcParams.update({
-    "font.size": 9.5, "axes.labelsize": 10, "axes.titlesize": 9.5, "legend.fontsize": 9, "xtick.labelsize": 9,
+    "font.size": 9.5, "axes.labelsize": 10, "axes.titlesize": 9.5, "legend.fontsize": 8.5, "xtick.labelsize": 9,
     "ytick.labelsize": 9, "font.family": "DejaVu Sans", "mathtext.fontset": "dejavusans", "axes.linewidth": 0.7,
     "xtick.direction": "in", "ytick.direction": "in", "xtick.major.width": 0.7, "ytick.major.width": 0.7,
     "legend.frameon": False, "pdf.fonttype": 42, "axes.unicode_minus": True, "lines.solid_capstyle": "butt",
@@ -30,7 +30,8 @@ SPECIAL = {
 }
 
 SYMBOLS = {
-    "omega": r"$\omega$", "omega_ratio": r"$\omega/\omega_1$", "support_motion.amplitude": r"$U$", "damping.out_of_plane": r"$\zeta_1$",
+    "omega": r"$\omega$", "omega_ratio": r"$\omega/\omega_1$", "support_motion.amplitude": r"$U$", "support_amplitude": r"$U$",
+    "damping.out_of_plane": r"$\zeta_1$",
     "damping.in_plane": r"$\zeta_2$", "cable.chord_tension": r"$T$", "cable.inclination_deg": r"$\theta$",
     "cable.chord_length": r"$L$", "tension_max": r"$T_{\max}$",
 }
@@ -63,18 +64,18 @@ def damping_words(out_of_plane, in_plane):
     return rf"$\zeta_1$ = {out_of_plane:g}, $\zeta_2$ = {in_plane:g}"
 
 
-def study_words(result, kind_words):
-    """Study, support motion, damping and what is unusual about the run: the second line of every title."""
+def study_words(result, kind_words, varied=None, damping=True):
+    """Study, support motion, damping and what is unusual about the run: a line under every title. What varies is left out."""
     a = result.group("study").attributes
-    varied = str(a.get("continuation.parameter", "omega"))
+    varied = varied or str(a.get("continuation.parameter", "omega"))
     words = [kind_words]
     if "support_motion.amplitude" in a and varied not in ("support_motion.amplitude", "support_amplitude"):
         words.append(rf"$U$ = {a['support_motion.amplitude']:g} m")
-    if {"damping.out_of_plane", "damping.in_plane"} <= a.keys() and not varied.startswith("damping"):
+    if damping and {"damping.out_of_plane", "damping.in_plane"} <= a.keys() and not varied.startswith("damping"):
         words.append(damping_words(a["damping.out_of_plane"], a["damping.in_plane"]))
     if varied != "omega" and "omega" in a:
         words.append(rf"$\omega$ = {a['omega']:g} rad/s")
-    words += [w for w in (f"{a.get('model.terms', '')} terms", f"{a.get('cable.coefficients', '')} coefficients") if w[0] != " "]
+    words += [f"{a[key]} {noun}" for key, noun in (("model.terms", "terms"), ("cable.coefficients", "coefficients")) if key in a]
     if a.get("outcome") != "complete":
         words.append("partial result")
     return ", ".join(w.replace(" ", NB) for w in words)
@@ -83,7 +84,7 @@ def study_words(result, kind_words):
 # --- page ------------------------------------------------------------------------------------------------------------------
 
 LINE = 0.19  # inches from one line of text to the next
-KEYS = {"handlelength": 2.2, "columnspacing": 1.2, "labelspacing": 0.35, "borderaxespad": 0.3}
+KEYS = {"handlelength": 2.0, "columnspacing": 1.1, "labelspacing": 0.35, "borderaxespad": 0.3}
 
 
 class Page:
@@ -135,12 +136,14 @@ class Page:
         """Writes title and legend, lays the panels out between them."""
         y = self.height - 0.07
         for line, weight in self.lines:
-            self.figure.text(0.09 / self.width, y / self.height, line, va="top", fontsize=TITLE_SIZE[weight], fontweight=weight, color=INK)
+            self.figure.text(0.09 / self.width, y / self.height, line, va="top", fontsize=TITLE_SIZE[weight], fontweight=weight,
+                             color=INK)
             y -= LINE
         if self.legend:
             self.figure.legend(handles=by_rows(self.legend, self.columns), loc="lower center", ncol=self.columns,
                                bbox_to_anchor=(0.5, 0.0), **KEYS)
-        self.figure.tight_layout(rect=(0, self.bottom / self.height, 1, 1 - self.top / self.height), pad=0.4, h_pad=0.9, w_pad=1.0)
+        between = (0, self.bottom / self.height, 1, 1 - self.top / self.height)
+        self.figure.tight_layout(rect=between, pad=0.4, h_pad=0.9, w_pad=1.0)
         self.canvas.draw()
         return self.figure
 
@@ -183,18 +186,15 @@ class Knots:
 def knots_of(result, name, columns):
     """The drawn knots of one branch: its points and its special points, in order."""
     branch, special = result.group("branches").group(name), result.group("special_points")
-    on_branch = np.flatnonzero(special.columns["branch"] == name) if special else np.array([], dtype=int)
-    s = np.concatenate([branch.column("arclength"), special.column("arclength")[on_branch] if len(on_branch) else []])
+    chosen = np.flatnonzero(special.column("branch") == name) if special else np.array([], dtype=int)
+
+    def sewn(of_branch, of_special):
+        return np.concatenate([branch.column(of_branch), special.column(of_special)[chosen] if len(chosen) else []])
+
+    s = sewn("arclength", "arclength")
     order = np.argsort(s, kind="stable")
-    sewn = {}
-    for c in columns:
-        extra = special.column(c)[on_branch] if len(on_branch) else []
-        sewn[c] = np.concatenate([branch.column(c), extra])[order]
-    rows = branch.rows()
-    after = np.concatenate([branch.column("n_unstable"), special.column("unstable_after")[on_branch] if len(on_branch) else []])[order]
-    before = np.concatenate([branch.column("n_unstable"), special.column("unstable_before")[on_branch] if len(on_branch) else []])[order]
-    is_point = order >= rows
-    return Knots(s[order], sewn, calm_between(after, before, is_point))
+    after, before = sewn("n_unstable", "unstable_after")[order], sewn("n_unstable", "unstable_before")[order]
+    return Knots(s[order], {c: sewn(c, c)[order] for c in columns}, calm_between(after, before, order >= branch.rows()))
 
 
 def calm_between(after, before, is_special):
@@ -285,26 +285,110 @@ class Tag:
 
 def place_tags(axes, tags):
     """Sets each text where it covers least: curves, markers, other texts and the frame are obstacles. Call after the layout."""
-    obstacles = drawn_pixels(axes)
-    frame = axes.get_window_extent()
-    boxes = [a.get_window_extent() for a in axes.texts if a.get_text()]
+    if not tags:
+        return
     scale = axes.figure.dpi / 72
-    for tag in tags:
-        text = axes.annotate(tag.text, xy=tag.places[0], xytext=(0, 0), textcoords="offset points", color=tag.colour, fontsize=8.5,
-                             fontweight="bold" if tag.bold else "normal", ha="center", va="center", zorder=8, annotation_clip=False)
-        extent = text.get_window_extent()
-        size = np.array([extent.width, extent.height])
-        spots = candidates(axes, tag, size, scale)
-        anchor, offset, box = min(spots, key=lambda s: cost(s, obstacles, boxes, frame, scale))
-        text.xy = tag.places[anchor]
-        text.set_position(offset / scale)
-        boxes.append(box)
-        if tag.leader and np.hypot(*gap(offset, size)) > 10 * scale:
-            draw_leader(axes, tag, anchor, offset, size, scale)
+    ink = Ink(drawn_pixels(axes), axes.get_window_extent())
+    standing = [t.get_window_extent() for t in axes.texts if t.get_text()]
+    texts = [axes.annotate(tag.text, xy=tag.places[0], xytext=(0, 0), textcoords="offset points", color=tag.colour, fontsize=8.5,
+                           fontweight="bold" if tag.bold else "normal", ha="center", va="center", zorder=8, annotation_clip=False)
+             for tag in tags]
+    sizes = [np.array([e.width, e.height]) for e in (t.get_window_extent() for t in texts)]
+    choices = [best_spots(axes, tag, size, ink, scale) for tag, size in zip(tags, sizes)]
+    for tag, text, size, spot in zip(tags, texts, sizes, arrangement(choices, standing, scale)):
+        text.xy = tag.places[spot.anchor]
+        text.set_position(spot.offset / scale)
+        if tag.leader and np.hypot(*gap(spot.offset, size)) > LEADER * scale:
+            draw_leader(axes, tag, spot.anchor, spot.offset, size, scale)
+
+
+LEADER = 10  # points of distance from which a text is tied to its place by a line
+
+
+class Ink:
+    """Which cells of a panel are drawn on, with running sums so that a box is counted at once."""
+    CELL = 2.0  # pixels
+
+    def __init__(self, pixels, frame):
+        self.frame = frame
+        self.shape = (int(frame.width / self.CELL) + 2, int(frame.height / self.CELL) + 2)
+        self.cells = np.zeros(self.shape, dtype=bool)
+        i, j = self.index(pixels).T
+        inside = (i >= 0) & (j >= 0) & (i < self.shape[0]) & (j < self.shape[1])
+        self.cells[i[inside], j[inside]] = True
+        self.sums = np.pad(np.cumsum(np.cumsum(self.cells, axis=0), axis=1), ((1, 0), (1, 0)))
+
+    def index(self, pixels):
+        return np.floor((np.asarray(pixels) - self.frame.p0) / self.CELL).astype(int)
+
+    def covered(self, box):
+        (i0, j0), (i1, j1) = np.clip(self.index([box.p0, box.p1]), 0, np.array(self.shape) - 1)
+        return self.sums[i1 + 1, j1 + 1] - self.sums[i0, j1 + 1] - self.sums[i1 + 1, j0] + self.sums[i0, j0]
+
+    def along(self, way):
+        i, j = np.clip(self.index(way), 0, np.array(self.shape) - 1).T
+        return np.count_nonzero(self.cells[i, j])
+
+    def holds(self, box):
+        return box.x0 > self.frame.x0 and box.x1 < self.frame.x1 and box.y0 > self.frame.y0 and box.y1 < self.frame.y1
+
+
+@dataclass
+class Spot:
+    """Where a text may stand: which of its places, offset of its centre and box in pixels, what it covers and crosses there."""
+    anchor: int
+    offset: np.ndarray
+    box: Bbox
+    cost: float = 0.0
+
+    def way(self):
+        """From the text's centre to its place."""
+        return 0.5 * (self.box.p0 + self.box.p1) - np.linspace(0, 1, 25)[:, None] * self.offset
+
+
+def best_spots(axes, tag, size, ink, scale, most=60):
+    """The cheapest spots of a text by what is drawn there."""
+    spots = list(candidates(axes, tag, size, scale))
+    for spot in spots:
+        padded = grown(spot.box, 2 * scale)
+        distance = np.hypot(*gap(spot.offset, size)) / scale
+        spot.cost = 1e6 * (not ink.holds(padded)) + 12 * ink.covered(padded) + distance
+        if distance > LEADER:
+            way = spot.way()
+            spot.cost += 15 * ink.along(way[np.hypot(*(way - way[-1]).T) > 7 * scale])
+    return sorted(spots, key=lambda s: s.cost)[:most]
+
+
+def arrangement(choices, standing, scale):
+    """One text after the other takes its best spot beside the others, from several orders; the best whole is kept."""
+    shuffle, best, least = np.random.default_rng(1), None, np.inf
+    costs = [np.array([s.cost for s in spots]) for spots in choices]
+    padded = [np.array([grown(s.box, 2 * scale).extents for s in spots]) for spots in choices]
+    ways = [np.array([s.way() for s in spots]) for spots in choices]
+    fixed = [b.extents for b in standing]
+    for _ in range(8):
+        chosen, order = {}, shuffle.permutation(len(choices))
+        for i in [*order, *order, *order]:
+            others = np.array([choices[k][c].box.extents for k, (c, _) in chosen.items() if k != i] + fixed).reshape(-1, 4)
+            total = costs[i] + crowding(padded[i], ways[i], others)
+            chosen[i] = (int(np.argmin(total)), float(np.min(total)))
+        if sum(cost for _, cost in chosen.values()) < least:
+            least = sum(cost for _, cost in chosen.values())
+            best = [choices[i][chosen[i][0]] for i in range(len(choices))]
+    return best
+
+
+def crowding(boxes, ways, others):
+    """For every spot: overlapping other texts, or running the leader through them. Boxes are rows x0, y0, x1, y1."""
+    b, o = boxes[:, None, :], others[None, :, :]
+    overlaps = (b[..., 0] < o[..., 2]) & (b[..., 2] > o[..., 0]) & (b[..., 1] < o[..., 3]) & (b[..., 3] > o[..., 1])
+    w, o = ways[:, :, None, :], others[None, None, :, :]
+    crossed = np.any(np.all((w > o[..., :2]) & (w < o[..., 2:]), axis=-1), axis=1)
+    return 1e4 * overlaps.sum(axis=1) + 300 * crossed.sum(axis=1)
 
 
 def candidates(axes, tag, size, scale):
-    """(which place, offset of the text's centre in pixels, its box) on rings about each place."""
+    """Spots on rings about each place."""
     for k, place in enumerate(tag.places):
         centre = axes.transData.transform(place)
         for clear in (4, 9, 15, 22, 30, 40, 52):
@@ -312,7 +396,7 @@ def candidates(axes, tag, size, scale):
                 direction = np.array([np.cos(angle), np.sin(angle)])
                 offset = direction * (0.5 * size + clear * scale)
                 low = centre + offset - 0.5 * size
-                yield k, offset, Bbox.from_bounds(*low, *size)
+                yield Spot(k, offset, Bbox.from_bounds(*low, *size))
 
 
 def gap(offset, size):
@@ -320,23 +404,8 @@ def gap(offset, size):
     return np.maximum(np.abs(offset) - 0.5 * size, 0.0)
 
 
-def cost(spot, obstacles, boxes, frame, scale):
-    _, offset, box = spot
-    padded = Bbox.from_extents(box.x0 - 2 * scale, box.y0 - 2 * scale, box.x1 + 2 * scale, box.y1 + 2 * scale)
-    if padded.x0 < frame.x0 or padded.x1 > frame.x1 or padded.y0 < frame.y0 or padded.y1 > frame.y1:
-        return 1e9
-    covered = np.count_nonzero((obstacles[:, 0] > padded.x0) & (obstacles[:, 0] < padded.x1) & (obstacles[:, 1] > padded.y0)
-                               & (obstacles[:, 1] < padded.y1))
-    overlapped = sum(padded.overlaps(b) for b in boxes)
-    return 1e4 * overlapped + 300 * crossed(spot, boxes) + 40 * covered + np.hypot(*gap(offset, np.array([box.width, box.height]))) / scale
-
-
-def crossed(spot, boxes):
-    """Other texts that a line from the place to this text would run through."""
-    _, offset, box = spot
-    centre = 0.5 * (box.p0 + box.p1)
-    way = [centre - share * offset for share in np.linspace(0, 1, 12)]
-    return sum(any(b.contains(*p) for p in way) for b in boxes)
+def grown(box, by):
+    return Bbox.from_extents(box.x0 - by, box.y0 - by, box.x1 + by, box.y1 + by)
 
 
 def drawn_pixels(axes, spacing=2.0):
@@ -364,7 +433,7 @@ def draw_leader(axes, tag, anchor, offset, size, scale):
 
 
 def branch_tag(knots, x, y, name, colour, axes):
-    """The branch's name beside its curve, anywhere between its ends but where it sits clear."""
+    """The branch's name beside its curve, where between its ends it sits clear."""
     low, high = axes.get_xlim(), axes.get_ylim()
     xs, ys = knots.columns[x], knots.columns[y]
     inside = np.flatnonzero((xs >= low[0]) & (xs <= low[1]) & (ys >= high[0]) & (ys <= high[1]))

@@ -4,8 +4,9 @@ from matplotlib.markers import CARETDOWN, CARETUP
 from matplotlib.ticker import MultipleLocator
 
 from figures_branches import bifurcation_panel, drawable, note, write_tags
-from figures_common import (BLUE, DASHES, GREEN, GREY, INK, NB, PURPLE, SKY, SYMBOLS, VERMILLION, Page, damping_words, label, letter,
-                            line_key, marker_key, number, parameter_of, special_keys, special_points, stability_keys, study_words)
+from figures_common import (BLUE, DASHES, GREEN, GREY, INK, NB, PURPLE, SKY, SYMBOLS, VERMILLION, Page, damping_words, label,
+                            letter, line_key, marker_key, number, parameter_of, special_keys, special_points, stability_keys,
+                            study_words)
 from superharmonic_motions import (AveragedBranches, averaged_orbits, compare, distinct_motions, nearest, order_of, state_of,
                                    sweep_motions)
 
@@ -18,12 +19,12 @@ PLUS = {"markersize": 9, "markeredgewidth": 1.5, "color": INK}
 
 
 def figures(result):
-    drawn = [response(result), whirling_orbits(result), verification_orbits(result), spectrum(result), time_series(result), error(result)]
-    return [d for d in drawn if d]
+    all_of_them = (response, whirling_orbits, verification_orbits, spectrum, time_series, error)
+    return [drawn for drawn in (figure(result) for figure in all_of_them) if drawn]
 
 
-def study(result):
-    return study_words(result, f"Superharmonic study of order {order_of(result)}")
+def study(result, **which):
+    return study_words(result, f"Superharmonic study of order {order_of(result)}", **which)
 
 
 def colours(result, names, column):
@@ -44,8 +45,9 @@ def response(result):
     points = special_points(result, [x, *columns])
     legend = branch_keys(result, colour) + special_keys(points) + (integrated_keys(result) if x == "omega" else [])
     title = f"Response at {n}ω: branches of the averaged equations" + with_integration(result, x)
-    page = Page(7.0, 7.0, title, [study(result)], legend)
-    panels = page.subplots(2, 1, sharex=True)[:, 0]
+    in_plane_only = WHIRLING not in colour.values()
+    page = Page(7.0, 5.2 if in_plane_only else 7.0, title, [study(result)], legend)
+    panels = page.subplots(2, 1, sharex=True, gridspec_kw={"height_ratios": [1, 2.2 if in_plane_only else 1]})[:, 0]
     for axes, column, symbol, where in zip(panels, columns, "AB", ("out of plane", "in plane")):
         bifurcation_panel(axes, result, names, x, column, points, colour.get)
         if x == "omega":
@@ -55,8 +57,8 @@ def response(result):
     panels[1].set_xlabel(label(SYMBOLS.get(x, x), result.group("branches").group(names[0]).units[x]))
     if x == "omega":
         ratio_axis(panels[0], result)
-    if WHIRLING not in colour.values():
-        note(panels[0], "no whirling branch: A = 0 on every averaged branch")
+    if in_plane_only:
+        note(panels[0], "no whirling branch: $A$ = 0 on every averaged branch", (0.98, 0.86))
     page.finish()
     for axes, column in zip(panels, columns):
         write_tags(axes, result, names, x, column, points, colour.get)
@@ -94,8 +96,9 @@ def draw_integrated(axes, result, symbol):
     for way, (marker, colour) in SWEEPS.items():
         motions = sweep_motions(result, way)
         for full in (True, False):
-            draw_motions(axes, [m for m in motions if follows_excitation(m) == full], symbol, marker=marker, markersize=5, color=colour,
-                         markerfacecolor=colour if full else "white", markeredgewidth=0.8, zorder=4)
+            chosen = [m for m in motions if follows_excitation(m) == full]
+            draw_motions(axes, chosen, symbol, marker=marker, markersize=5, color=colour, zorder=4, markeredgewidth=0.8,
+                         markerfacecolor=colour if full else "white")
     draw_motions(axes, distinct_motions(result), symbol, marker="+", zorder=7, **PLUS)
 
 
@@ -135,12 +138,9 @@ def whirling_orbits(result):
     cells = [(f"{letter(i)} {damping_words(p.attributes['damping_out_of_plane'], p.attributes['damping_in_plane'])}{unusual(p)}",
               [p.group("averaged")] if p.group("averaged") else [], p.group("integrated")) for i, p in enumerate(pairs)]
     omega = pairs[0].attributes["omega"]
-    title = f"Whirling orbits at ω = {omega:g} rad/s: averaged against integrated"
-    return "orbits", orbit_sheet(cells, title, f"{study_without_damping(result)}; damping in the panels", 5.4)
-
-
-def study_without_damping(result):
-    return ", ".join(w for w in study(result).split(", ") if "zeta" not in w)
+    title = f"Orbits at ω = {omega:g} rad/s: averaged against integrated"
+    return "orbits", orbit_sheet(cells, title, f"{study(result, varied='omega', damping=False)}; damping in the panels",
+                                 5.4 if len(cells) > 1 else 4.4)
 
 
 def unusual(pair):
@@ -188,11 +188,11 @@ def orbit_sheet(cells, title, sentence, width):
 
 
 def orbit_keys(cells):
-    keys = [line_key("averaged, stable", **STABLE_ORBIT)]
-    if any(not o.attributes["stable"] for _, averaged, _ in cells for o in averaged):
-        keys.append(line_key("averaged, unstable", **UNSTABLE_ORBIT))
+    stabilities = {bool(o.attributes["stable"]) for _, averaged, _ in cells for o in averaged}
+    keys = [line_key("averaged, stable", **STABLE_ORBIT)] if True in stabilities else []
+    keys += [line_key("averaged, unstable", **UNSTABLE_ORBIT)] if False in stabilities else []
     return keys + [line_key("integrated", color=INK, linewidth=1.2),
-                   marker_key("start of an excitation period (open: averaged)", "o", color=INK, markersize=4.5)]
+                   marker_key("start of a period" + (" (open: averaged)" if stabilities else ""), "o", color=INK, markersize=4.5)]
 
 
 def equal_scales(axes, left, right, low, high):
@@ -220,13 +220,16 @@ def draw_orbits(axes, averaged, integrated):
     axes.axhline(0, color="#e4e4e4", linewidth=0.7, zorder=0)
     axes.axvline(0, color="#e4e4e4", linewidth=0.7, zorder=0)
     for orbit in averaged:
-        q1, q2 = path(orbit, mirror_like(orbit, integrated))
+        sign = mirror_like(orbit, integrated)
+        q1, q2 = path(orbit, sign)
         look = STABLE_ORBIT if orbit.attributes["stable"] else UNSTABLE_ORBIT
         axes.plot(q1, q2, zorder=2, **look)
-        axes.plot(mirror_like(orbit, integrated) * orbit.column("q1")[0], orbit.column("q2")[0], "o", markersize=6.5, markerfacecolor="white", markeredgewidth=1.3,
-                  markeredgecolor=look["color"], zorder=5)
+        axes.plot(sign * orbit.column("q1")[0], orbit.column("q2")[0], "o", markersize=6.5, markerfacecolor="white",
+                  markeredgewidth=1.3, markeredgecolor=look["color"], zorder=5)
+    if not averaged:
+        note(axes, "no averaged whirling motion", (0.97, 0.98))
     if integrated:
-        q1, q2 = (closed(integrated, q) for q in ("q1", "q2"))
+        q1, q2 = (smooth(integrated, q)[1] for q in ("q1", "q2"))
         axes.plot(q1, q2, color=INK, linewidth=1.2, zorder=4)
         axes.plot(q1[0], q2[0], "o", color=INK, markersize=4.2, zorder=6)
 
@@ -239,10 +242,14 @@ def path(orbit, sign):
     return q1, q2
 
 
-def closed(series, q):
-    """A periodic record ends one sample before it repeats."""
-    values = series.column(q)
-    return np.append(values, values[0]) if series.attributes.get("motion") == "periodic" else values
+def smooth(series, q, times=4):
+    """A periodic record, closed and with samples between by its own Fourier series; any other record as it is."""
+    t, values = series.column("t"), series.column(q)
+    if series.attributes.get("motion") != "periodic":
+        return t, values
+    n = len(values)
+    fine = np.fft.irfft(np.fft.rfft(values), times * n) * times
+    return np.append(t[0] + (t[1] - t[0]) / times * np.arange(times * n), t[0] + (t[1] - t[0]) * n), np.append(fine, fine[0])
 
 
 def mirror_like(orbit, integrated):
@@ -277,21 +284,31 @@ def spectrum(result):
     if not motions:
         return None
     n = order_of(result)
-    keys = [marker_key("$q_1$, out of plane", "o", color=WHIRLING, markersize=5), marker_key("$q_2$, in plane", "s", color=IN_PLANE, markersize=5)]
-    keys.append(marker_key(f"averaged: $B_0$ of $q_2$ at 1, $A$ and $B$ at {n}", "_", color=INK, markersize=11, markeredgewidth=1.6))
+    keys = [marker_key("$q_1$, out of plane", "o", color=WHIRLING, markersize=5),
+            marker_key("$q_2$, in plane", "s", color=IN_PLANE, markersize=5),
+            marker_key(rf"nearest averaged motion: $B_0$ at $\omega$, $A$ and $B$ at {n}$\omega$", "_", color=INK, markersize=11,
+                       markeredgewidth=1.6)]
     rows, columns = grid(len(motions), 3)
     page = Page(7.0, 2.35 * rows + 0.2, "Harmonics of the settled motions", [study(result)], keys)
     panels = page.subplots(rows, columns, sharex=True, sharey=True)
+    last = last_harmonic(result, motions)
     for i, (axes, m) in enumerate(zip(panels.ravel(), motions)):
         draw_spectrum(axes, result.group(f"verification/spectra/run{m.run}"))
-        state = nearest([s for s in averaged_orbits(result, m.omega) if s.stable], m)
+        state = nearest(averaged_orbits(result, m.omega), m)
         draw_averaged_harmonics(axes, state, n)
         axes.set_title(motion_title(i, m), loc="left", fontsize=9)
-        axes.xaxis.set_major_locator(MultipleLocator(1 if columns < 3 else 2))
+        axes.xaxis.set_major_locator(MultipleLocator(1 if columns < 3 or last < 5 else 2))
         axes.xaxis.set_minor_locator(MultipleLocator(1))
+    panels[0, 0].set_xlim(-0.5, last + 0.5)
     panels[0, 0].set_ylim(FLOOR, 6 * highest(result, motions))
     finish_sheet(panels, len(motions), r"frequency / $\omega$", "amplitude [m]")
     return "spectrum", page.finish()
+
+
+def last_harmonic(result, motions):
+    """The highest frequency with an amplitude above the floor."""
+    tables = [result.group(f"verification/spectra/run{m.run}") for m in motions]
+    return max(np.max(t.column("harmonic")[np.maximum(t.column("q1"), t.column("q2")) > FLOOR], initial=3) for t in tables)
 
 
 def highest(result, motions):
@@ -319,8 +336,8 @@ def draw_averaged_harmonics(axes, state, order):
     first = state_of(state.orbit, 1)
     marks = [(1, first.B), (order, state.A), (order, state.B)]
     marks = [(k, a, -0.12 if i == 1 else 0.12) for i, (k, a) in enumerate(marks) if a > FLOOR]
-    axes.plot([k + shift for k, _, shift in marks], [a for _, a, _ in marks], linestyle="none", marker="_", color=INK, markersize=9,
-              markeredgewidth=1.5, zorder=5)
+    axes.plot([k + shift for k, _, shift in marks], [a for _, a, _ in marks], linestyle="none", marker="_", color=INK,
+              markersize=9, markeredgewidth=1.5, zorder=5)
 
 
 # --- time series -----------------------------------------------------------------------------------------------------------
@@ -367,12 +384,11 @@ def draw_series(axes, series, motion):
 
 def repeated(series, q, motion, end):
     """A periodic record is repeated to fill the panel; any other is shown as far as it goes."""
-    t, values = series.column("t"), series.column(q)
+    t, values = smooth(series, q)
     if motion.kind == "periodic":
-        record = period(motion) * motion.multiple
-        copies = int(np.ceil(end / record - 1e-9))
-        t = np.concatenate([t + k * record for k in range(copies)] + [[copies * record]])
-        values = np.concatenate([values] * copies + [values[:1]])
+        copies = int(np.ceil(end / t[-1] - 1e-9))
+        t = np.concatenate([t[:-1] + k * t[-1] for k in range(copies)] + [[copies * t[-1]]])
+        values = np.concatenate([values[:-1]] * copies + [values[-1:]])
     return t[t <= end * (1 + 1e-9)], values[t <= end * (1 + 1e-9)]
 
 
@@ -396,6 +412,9 @@ def error(result):
     for axes, symbol in zip(panels, "AB"):
         draw_error(axes, sources, symbol)
         axes.set_ylabel(f"error of ${symbol}$ [m]")
+    if max(abs(c.error["A"]) for c in every) < 1e-6:
+        panels[0].set_ylim(panels[1].get_ylim())
+        note(panels[0], "no error: all motions are in plane")
     panels[1].set_xlabel(label(SYMBOLS["omega"], "rad/s"))
     ratio_axis(panels[0], result)
     return "error", page.finish()
@@ -423,7 +442,7 @@ def error_sentences(every):
     """The largest errors: of all motions, and of those that the averaged equations have at all."""
     matched = [c for c in every if c.counterpart]
     sentences = [f"Largest error: {largest(every)}."]
-    if matched and len(matched) < len(every):
+    if matched and largest(matched) != largest(every):
         sentences.append(f"Largest where a stable averaged counterpart exists: {largest(matched)}.")
     if len(matched) < len(every):
         sentences.append("Ringed: the averaged motion compared with is of another kind or period, or a nearer one is unstable.")
@@ -447,7 +466,8 @@ def largest_of(compared, symbol):
 def draw_error(axes, sources, symbol):
     axes.axhline(0, color=INK, linewidth=0.8)
     for _, marker, style, found in sources:
-        axes.plot([c.motion.omega for c in found], [c.error[symbol] for c in found], linestyle="none", marker=marker, zorder=4, **style)
+        axes.plot([c.motion.omega for c in found], [c.error[symbol] for c in found], linestyle="none", marker=marker, zorder=4,
+                  **style)
     lonely = [c for _, _, _, found in sources for c in found if not c.counterpart]
     axes.plot([c.motion.omega for c in lonely], [c.error[symbol] for c in lonely], linestyle="none", marker="o", markersize=9,
               markerfacecolor="none", markeredgecolor=GREY, markeredgewidth=0.9, zorder=3)

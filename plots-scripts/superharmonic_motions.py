@@ -94,8 +94,15 @@ def motion_of(result, table, row, run, h, order):
     amplitudes = [spectrum["q1"], spectrum["q2"]] if spectrum else h
     A, B = (amplitude_at(spectrum, h, i, order) for i in (0, 1))
     in_plane = bool(np.max(amplitudes[0]) <= IN_PLANE * np.max(amplitudes[1]))
-    return Motion(run, float(table.column("omega")[row]), A, B, str(table.column("motion")[row]), int(table.column("multiple")[row]),
-                  in_plane)
+    multiple = 1 if spectrum and repeats_every_period(spectrum) else int(table.column("multiple")[row])
+    return Motion(run, float(table.column("omega")[row]), A, B, str(table.column("motion")[row]), multiple, in_plane)
+
+
+def repeats_every_period(spectrum):
+    """No share at fractions of the excitation frequency: of period T, though its settling was seen after several periods only."""
+    largest = max(np.max(spectrum["q1"]), np.max(spectrum["q2"]))
+    fractional = ~np.isclose(spectrum["harmonic"], np.round(spectrum["harmonic"]))
+    return not np.any(fractional) or max(np.max(spectrum[q][fractional]) for q in ("q1", "q2")) <= 1e-6 * largest
 
 
 def amplitude_at(spectrum, h, coordinate, order):
@@ -130,17 +137,35 @@ class AveragedBranches:
     """All averaged states at any frequency, interpolated along the branches."""
 
     def __init__(self, result, order):
-        self.columns = ["omega", f"q1_h{order}", f"q2_h{order}"]
-        self.branches = [knots_of(result, name, self.columns) for name, b in result.group("branches").groups.items() if b.rows() > 1]
+        columns = ["omega", f"q1_h{order}", f"q2_h{order}"]
+        names = [name for name, branch in result.group("branches").groups.items() if branch.rows() > 1]
+        self.curves = [refined(knots_of(result, name, columns), columns) for name in names]
 
     def at(self, omega):
         states = []
-        for knots in self.branches:
-            w, A, B = (knots.columns[c] for c in self.columns)
-            for i in np.flatnonzero((np.minimum(w[:-1], w[1:]) <= omega) & (omega <= np.maximum(w[:-1], w[1:]))):
-                share = (omega - w[i]) / (w[i + 1] - w[i]) if w[i + 1] != w[i] else 0.0
-                states.append(Averaged(omega, A[i] + share * (A[i + 1] - A[i]), B[i] + share * (B[i + 1] - B[i]), bool(knots.calm[i])))
+        for (w, A, B), calm in self.curves:
+            rounding = 1e-9 * omega
+            low, high = np.minimum(w[:-1], w[1:]) - rounding, np.maximum(w[:-1], w[1:]) + rounding
+            for i in np.flatnonzero((low <= omega) & (omega <= high)):
+                share = (omega - w[i]) / (w[i + 1] - w[i]) if abs(w[i + 1] - w[i]) > rounding else 0.0
+                between = [float(a[i] + share * (a[i + 1] - a[i])) for a in (A, B)]
+                states.append(Averaged(omega, *between, bool(calm[i])))
         return states
+
+
+def refined(knots, columns, parts=16):
+    """Cubics through the knots, in arclength, sampled: the branch bends between computed points as it does beside them."""
+    distinct = np.append(True, np.diff(knots.arclength) > 1e-9)
+    s, calm = knots.arclength[distinct], knots.calm[distinct[1:]]
+    h = np.diff(s)[:, None]
+    t = np.linspace(0, 1, parts, endpoint=False)[None, :]
+    curves = []
+    for values in (knots.columns[c][distinct] for c in columns):
+        slope = np.gradient(values, s, edge_order=2 if len(s) > 2 else 1)
+        ends = values[:-1, None], values[1:, None], slope[:-1, None] * h, slope[1:, None] * h
+        weights = 1 - 3 * t**2 + 2 * t**3, 3 * t**2 - 2 * t**3, t - 2 * t**2 + t**3, t**3 - t**2
+        curves.append(np.append(sum(e * w for e, w in zip(ends, weights)).ravel(), values[-1]))
+    return curves, np.repeat(calm, parts)
 
 
 def nearest(states, motion):
@@ -152,4 +177,5 @@ def compare(states, motion):
     stable = nearest([s for s in states if s.stable], motion)
     if stable is None or not np.isfinite(motion.A + motion.B):
         return None
-    return Comparison(motion, stable, nearest(states, motion).stable and stable.in_plane == motion.in_plane and motion.multiple == 1)
+    alike = stable.in_plane == motion.in_plane and motion.kind == "periodic" and motion.multiple == 1
+    return Comparison(motion, stable, alike and nearest(states, motion).stable)

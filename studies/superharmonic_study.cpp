@@ -6,10 +6,10 @@
 
 #include "continuation/network.hpp"
 #include "core/kinsol.hpp"
+#include "core/parallel.hpp"
 #include "models/closed_forms.hpp"
 #include "studies/branch_output.hpp"
 #include "studies/common_keys.hpp"
-#include "core/parallel.hpp"
 #include "studies/verification.hpp"
 
 namespace whirl::studies {

@@ -1,0 +1,109 @@
+#include "continuation/normal_form.hpp"
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/LU>
+#include <Eigen/SVD>
+
+namespace whirl::continuation {
+namespace {
+
+using ComplexVector = Eigen::VectorXcd;
+
+// B(a, b) and C(a, b, c) in x only; complex arguments by multilinearity.
+class Forms {
+ public:
+  Forms(const Problem& f, In u) : f_(f), u_(u), full_(3, Vector::Zero(u.size())), h_(f.size(), u.size()), t_(f.size()) {}
+
+  Vector B(const Vector& a, const Vector& b) {
+    full_[0].head(f_.size()) = a;
+    f_.second(u_, full_[0], h_);
+    return h_.leftCols(f_.size()) * b;
+  }
+  Vector C(const Vector& a, const Vector& b, const Vector& c) {
+    full_[0].head(f_.size()) = a;
+    full_[1].head(f_.size()) = b;
+    full_[2].head(f_.size()) = c;
+    f_.third(u_, full_[0], full_[1], full_[2], t_);
+    return t_;
+  }
+  ComplexVector B(const ComplexVector& a, const ComplexVector& b) {
+    const std::complex<double> i(0.0, 1.0);
+    return (B(Vector(a.real()), Vector(b.real())) - B(Vector(a.imag()), Vector(b.imag()))).cast<std::complex<double>>() +
+           i * (B(Vector(a.real()), Vector(b.imag())) + B(Vector(a.imag()), Vector(b.real()))).cast<std::complex<double>>();
+  }
+  // C(q, q, conj q) with q = a + i b: C(aaa) + C(abb) + i (C(aab) + C(bbb))
+  ComplexVector C_qqq(const ComplexVector& q) {
+    const Vector a = q.real(), b = q.imag();
+    const std::complex<double> i(0.0, 1.0);
+    return (C(a, a, a) + C(a, b, b)).cast<std::complex<double>>() + i * (C(a, a, b) + C(b, b, b)).cast<std::complex<double>>();
+  }
+
+ private:
+  const Problem& f_;
+  Vector u_;
+  std::vector<Vector> full_;
+  Matrix h_;
+  Vector t_;
+};
+
+void null_vectors(const Matrix& a, Vector& v, Vector& w) {
+  const Eigen::JacobiSVD<Matrix> svd(a, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  v = svd.matrixV().col(a.cols() - 1);
+  w = svd.matrixU().col(a.rows() - 1);
+}
+
+// h with A h = rhs, made unique by v'h = 0; rhs must lie in the range of A.
+Vector solve_off_null(const Matrix& a, const Vector& v, const Vector& w, const Vector& rhs) {
+  const auto n = a.rows();
+  Matrix m(n + 1, n + 1);
+  m << a, w, v.transpose(), 0.0;
+  Vector r(n + 1);
+  r << rhs, 0.0;
+  return m.partialPivLu().solve(r).head(n);
+}
+
+}  // namespace
+
+void set_normal_form(const Problem& f, SpecialPoint& point) {
+  const int n = f.size();
+  if (f.derivatives() < 3) return;
+  Matrix j(n, n + f.parameters());
+  f.jacobian(point.u, j);
+  const Matrix a = j.leftCols(n);
+  Forms forms(f, point.u);
+  if (point.type == EventType::hopf) {
+    const Eigen::EigenSolver<Matrix> right(a), left(Matrix(a.transpose()));
+    const std::complex<double> target(0.0, point.frequency);
+    const auto nearest = [](const Eigen::VectorXcd& values, std::complex<double> z) {
+      Eigen::Index best = 0;
+      (values.array() - z).abs().minCoeff(&best);
+      return best;
+    };
+    const ComplexVector q = right.eigenvectors().col(nearest(right.eigenvalues(), target)).normalized();
+    ComplexVector p = left.eigenvectors().col(nearest(left.eigenvalues(), std::conj(target)));  // A'p = -i w p
+    p /= std::conj(p.dot(q));                                                                   // p* q = 1
+    const Eigen::MatrixXcd A = a.cast<std::complex<double>>();
+    const ComplexVector b11 = A.partialPivLu().solve(forms.B(q, ComplexVector(q.conjugate())));
+    const ComplexVector b20 = (2.0 * target * Eigen::MatrixXcd::Identity(n, n) - A).partialPivLu().solve(forms.B(q, q));
+    const std::complex<double> sum = p.dot(forms.C_qqq(q)) - 2.0 * p.dot(forms.B(q, b11)) + p.dot(forms.B(ComplexVector(q.conjugate()), b20));
+    point.coefficient = sum.real() / (2.0 * point.frequency);
+    point.has_coefficient = std::isfinite(point.coefficient);
+    point.null_vector = q.real();
+    point.null_vector_im = q.imag();
+    return;
+  }
+  if (point.type != EventType::fold && point.type != EventType::branch_point) return;
+  Vector v, w;
+  null_vectors(a, v, w);
+  const double overlap = w.dot(v);
+  if (std::abs(overlap) < 1e-10) return;  // a double zero: no coefficient
+  w /= overlap;
+  const Vector bvv = forms.B(v, v);
+  const double quadratic = 0.5 * w.dot(bvv);
+  // At a branch point the centre manifold bends with the parameter too; w'B(v, v) = 0 marks the pitchfork.
+  const bool pitchfork = point.type == EventType::branch_point && std::abs(quadratic) < 1e-7 * (1.0 + bvv.norm());
+  point.coefficient = pitchfork ? w.dot(forms.C(v, v, v)) / 6.0 + 0.5 * w.dot(forms.B(v, solve_off_null(a, v, w, Vector(-bvv)))) : quadratic;
+  point.has_coefficient = std::isfinite(point.coefficient);
+}
+
+}  // namespace whirl::continuation

@@ -1,0 +1,18 @@
+#pragma once
+/// Normal-form coefficients of special points, from exact second and third derivatives, [Kuznetsov2004, secs 3.4, 5.4, 7.4].
+///
+///     fold        a' = beta + c a^2,      c = (1/2) w' B(v, v),                                     w'v = 1, |v| = 1
+///     pitchfork   a' = beta a + c a^3,    c = (1/6) w' C(v, v, v) + (1/2) w' B(v, h),   A h = -B(v, v)        c < 0: supercritical
+///     Hopf        l1 = Re[ p* C(q, q, q~) - 2 p* B(q, A^-1 B(q, q~)) + p* B(q~, (2 i w - A)^-1 B(q, q)) ] / (2 w)      < 0: supercritical
+///
+/// A = r_x, B and C its second and third derivatives in x. v and q have unit length, so numbers depend on the units of x.
+
+#include "continuation/branch.hpp"
+
+namespace whirl::continuation {
+
+/// Sets point.coefficient (and null vectors of a Hopf point) where the problem offers third derivatives and the type has a coefficient.
+/// A branch point gets one only where its null vector makes it a pitchfork (w' B(v, v) = 0), else the transcritical (1/2) w' B(v, v).
+void set_normal_form(const Problem& f, SpecialPoint& point);
+
+}  // namespace whirl::continuation

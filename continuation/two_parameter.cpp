@@ -1,0 +1,288 @@
+#include "continuation/two_parameter.hpp"
+
+#include <fmt/format.h>
+
+#include <Eigen/Eigenvalues>
+#include <cmath>
+
+#include "continuation/augmented.hpp"
+#include "continuation/normal_form.hpp"
+#include "core/newton.hpp"
+
+namespace whirl::continuation {
+namespace {
+
+// A base with k = 2 seen at one value of the second parameter: normal forms and spectra of the point itself.
+class Held : public Problem {
+ public:
+  Held(const Problem& f, double p2) : Problem(f.size(), 1, f.is_flow()), f_(f), p2_(p2), u_(f.size() + 2), wide_(f.size(), f.size() + 2) {
+    offer_derivatives(f.derivatives());
+    for (const auto& r : f.reflections()) add_reflection(r);
+  }
+  void hold(double p2) { p2_ = p2; }
+
+ private:
+  const Vector& widen(In u, double last) const {
+    u_.head(u.size()) = u;
+    u_[u.size()] = last;
+    return u_;
+  }
+  void do_residual(In u, Out r) const override { f_.residual(widen(u, p2_), r); }
+  void do_jacobian(In u, MatrixOut j) const override {
+    f_.jacobian(widen(u, p2_), wide_);
+    j = wide_.leftCols(j.cols());
+  }
+  void do_second(In u, In v, MatrixOut h) const override {
+    Vector w(v.size() + 1);
+    w << v, 0.0;
+    f_.second(widen(u, p2_), w, wide_);
+    h = wide_.leftCols(h.cols());
+  }
+  void do_third(In u, In a, In b, In c, Out t) const override {
+    Vector A(a.size() + 1), B(a.size() + 1), C(a.size() + 1);
+    A << a, 0.0;
+    B << b, 0.0;
+    C << c, 0.0;
+    f_.third(widen(u, p2_), A, B, C, t);
+  }
+  const Problem& f_;
+  double p2_;
+  mutable Vector u_;
+  mutable Matrix wide_;
+};
+
+std::unique_ptr<AugmentedSystem> make_system(const Problem& f, const SpecialPoint& point, const Blocks& blocks, In u) {
+  const Indices& state = blocks.indices[0];
+  const Indices& block = blocks.indices[static_cast<std::size_t>(point.block)];
+  switch (point.type) {
+    case EventType::fold:
+      return std::make_unique<SingularSystem>(f, state, state, u);
+    case EventType::branch_point:
+      if (point.block > 0) return std::make_unique<SingularSystem>(f, state, block, u);
+      return std::make_unique<BranchPointSystem>(f, u);
+    case EventType::hopf:
+      return std::make_unique<HopfSystem>(f, state, block, u);
+    case EventType::period_doubling:
+    case EventType::torus:
+    case EventType::end:
+    case EventType::gave_up:
+    case EventType::user_value:
+    case EventType::peak:
+    case EventType::unresolved:
+      break;
+  }
+  throw std::invalid_argument(fmt::format("no two-parameter curve of {} points", to_string(point.type)));
+}
+
+// Test functions along a curve; each vanishes at its codimension-2 point.
+struct Test {
+  std::string type;
+  std::function<double(In y)> value;
+};
+
+class Follower {
+ public:
+  Follower(const Problem& f, const SpecialPoint& point, const TwoParameterOptions& options)
+      : f_(f), point_(point), options_(options), held_(f, 0.0), blocks_(make_blocks(f, active_reflections(f, point.u.head(f.size())))) {}
+
+  DefiningCurve run(double p2, const Observer& observer);
+
+ private:
+  SpecialPoint at(In y) const;  // the special point behind the system's unknowns, with its normal form
+  std::vector<Test> tests() const;
+  Vector base(In y) const { return system_->base_point(y); }
+  double crossing_pair(In y) const;  // real part of the least damped pair away from the critical ones
+  double crossing_real(In y) const;
+  void locate(const Branch& b, int i, const Test& test, double from, double to, DefiningCurve& curve);
+
+  const Problem& f_;
+  SpecialPoint point_;
+  TwoParameterOptions options_;
+  mutable Held held_;
+  Blocks blocks_;
+  std::unique_ptr<AugmentedSystem> system_;
+};
+
+SpecialPoint Follower::at(In y) const {
+  const Vector u = base(y);
+  const int n = f_.size();
+  SpecialPoint s = point_;
+  s.u = u.head(n + 1);
+  s.has_coefficient = false;
+  s.coefficient = std::nan("");
+  held_.hold(u[n + 1]);
+  if (const auto* hopf = dynamic_cast<const HopfSystem*>(system_.get())) {
+    const double kappa = hopf->kappa(y);
+    s.frequency = kappa > 0.0 ? std::sqrt(kappa) : 0.0;
+    if (!(kappa > 0.0)) return s;
+  }
+  set_normal_form(held_, s);
+  if (!s.has_coefficient) s.coefficient = std::nan("");
+  return s;
+}
+
+double Follower::crossing_pair(In y) const {
+  Matrix j(f_.size(), f_.size() + 2);
+  f_.jacobian(base(y), j);
+  double best = std::nan("");
+  const Eigen::VectorXcd e = Eigen::EigenSolver<Matrix>(j.leftCols(f_.size()), false).eigenvalues();
+  for (const auto& z : e)
+    if (z.imag() > 1e-9 && !(std::abs(z.real()) > std::abs(best))) best = z.real();
+  return best;
+}
+
+double Follower::crossing_real(In y) const {
+  Matrix j(f_.size(), f_.size() + 2);
+  f_.jacobian(base(y), j);
+  double best = std::nan("");
+  const Eigen::VectorXcd e = Eigen::EigenSolver<Matrix>(j.leftCols(f_.size()), false).eigenvalues();
+  for (const auto& z : e)
+    if (z.imag() == 0.0 && !(std::abs(z.real()) > std::abs(best))) best = z.real();
+  return best;
+}
+
+std::vector<Test> Follower::tests() const {
+  const auto coefficient = [this](In y) { return at(y).coefficient; };
+  std::vector<Test> all;
+  const auto* singular = dynamic_cast<const SingularSystem*>(system_.get());
+  if (point_.type == EventType::fold && singular) {
+    // c w'v, not c: finite where w'v = 0
+    all.push_back({"CP", [this, singular](In y) {
+                     const Vector u = base(y), v = singular->null_vector(y), w = singular->left_null_vector(y);
+                     Vector full = Vector::Zero(u.size());
+                     full.head(f_.size()) = v;
+                     Matrix h(f_.size(), u.size());
+                     f_.second(u, full, h);
+                     return w.dot(h.leftCols(f_.size()) * v);
+                   }});
+    all.push_back({"BT", [singular](In y) {
+                     const Vector v = singular->null_vector(y), w = singular->left_null_vector(y);
+                     return w.dot(v);
+                   }});
+    if (f_.is_flow()) all.push_back({"ZH", [this](In y) { return crossing_pair(y); }});
+  }
+  if (point_.type == EventType::branch_point && point_.block > 0) all.push_back({"DP", coefficient});
+  if (const auto* hopf = dynamic_cast<const HopfSystem*>(system_.get())) {
+    all.push_back({"BT", [hopf](In y) { return hopf->kappa(y); }});
+    all.push_back({"GH", coefficient});
+    all.push_back({"ZH", [this](In y) { return crossing_real(y); }});
+  }
+  return all;
+}
+
+// Secant and bisection on the test function between points i and i + 1 of the walked system.
+void Follower::locate(const Branch& b, int i, const Test& test, double from, double to, DefiningCurve& curve) {
+  Curve c(*system_, make_blocks(*system_, {}), options_.walk.corrector);
+  c.set_scales(std::max(1e-12, b.u(i).head(system_->size()).norm()), options_.range2[1] - options_.range2[0]);
+  Sample a, d, m;
+  if (!c.sample(b.u(i), b.tangent(i), a) || !c.sample(b.u(i + 1), b.tangent(i + 1), d)) return;
+  double lo = 0.0, hi = 1.0, f = from, g = to;
+  for (int k = 0; k < 80 && hi - lo > 1e-14; ++k) {
+    const double sigma = k % 3 == 2 ? 0.5 * (lo + hi) : std::clamp(lo + (hi - lo) * f / (f - g), lo + 0.01 * (hi - lo), hi - 0.01 * (hi - lo));
+    if (!c.between(a, d, sigma, m)) return;
+    const double h = test.value(m.u);
+    if (!std::isfinite(h)) return;
+    if (h == 0.0) break;
+    if ((h > 0.0) == (f > 0.0)) {
+      lo = sigma;
+      f = h;
+    } else {
+      hi = sigma;
+      g = h;
+    }
+  }
+  // A pole changes sign as well; at a zero the function is small next to what it was at the ends.
+  if (std::abs(test.value(m.u)) > 1e-3 * std::max(std::abs(from), std::abs(to))) return;
+  CodimensionTwo s;
+  s.type = test.type;
+  s.u = base(m.u);
+  s.residual = m.residual;
+  s.arclength = b.arclength(i) + lo * (b.arclength(i + 1) - b.arclength(i));
+  curve.special.push_back(std::move(s));
+}
+
+DefiningCurve Follower::run(double p2, const Observer& observer) {
+  const int n = f_.size();
+  Vector u(n + 2);
+  u << point_.u, p2;
+  system_ = make_system(f_, point_, blocks_, u);
+  TwoParameterOptions o = options_;
+  o.walk.lower = o.range2[0];
+  o.walk.upper = o.range2[1];
+  o.walk.locate_events = true;
+  const int p1_column = static_cast<int>(blocks_.indices[0].size());
+  const auto inside = [&](double p1) { return p1 >= o.range1[0] && p1 <= o.range1[1]; };
+  int fresh = 0;
+  StopReason why = StopReason::none;  // of a walk that the watch below stops
+  const Observer watch = [&](const Branch& b, int i) {
+    if (++fresh % 10 == 0) system_->update_borders(b.u(i));  // keeps the borders near the null vectors as they turn
+    const auto* hopf = dynamic_cast<const HopfSystem*>(system_.get());
+    if (hopf && hopf->kappa(b.u(i)) < 0.0) why = StopReason::bogdanov_takens;  // beyond: neutral saddles
+    else if (!inside(b.u(i)[p1_column])) why = StopReason::parameter_bound;    // of the first parameter
+    else if (observer && !observer(b, i)) why = StopReason::observer;
+    return why == StopReason::none;
+  };
+  Walker walker(*system_, o.walk);
+  const Branch b = [&] {
+    // Polished at its own p2 first.
+    const NewtonResult start = newton(*system_, system_->unknowns(u), {.tolerance = 1e-12, .max_iterations = 20});
+    if (!start.ok()) throw std::invalid_argument(fmt::format("the special point does not satisfy its system: {}", to_string(start.outcome)));
+    const Vector up = Vector::Unit(system_->size() + 1, system_->size());
+    const auto walk = [&](const Vector& direction) {
+      why = StopReason::none;
+      Branch half = walker.walk_from(start.x, direction, false, watch);
+      if (half.stop_reason == StopReason::observer) half.stop_reason = why;
+      return half;
+    };
+    Branch forward = walk(up);
+    if (forward.stop_reason == StopReason::closed_loop || forward.points() == 0) return forward;
+    system_->update_borders(start.x);
+    return Branch::joined(walk(-forward.tangent(0)), forward);
+  }();
+  DefiningCurve curve;
+  curve.type = point_.type;
+  curve.subtype = point_.subtype;
+  curve.start_reason = b.start_reason;
+  curve.stop_reason = b.stop_reason;
+  const int count = b.points();
+  curve.u.resize(n + 2, count);
+  curve.coefficient.resize(count);
+  curve.frequency.resize(count);
+  curve.residual.resize(count);
+  const auto all = tests();
+  std::vector<double> last(all.size(), std::nan(""));
+  for (int i = 0; i < count; ++i) {
+    system_->update_borders(b.u(i));
+    const SpecialPoint s = at(b.u(i));
+    curve.u.col(i) = base(b.u(i));
+    curve.coefficient[i] = s.coefficient;
+    curve.frequency[i] = s.frequency;
+    curve.residual[i] = b.residual(i);
+    for (std::size_t t = 0; t < all.size(); ++t) {
+      const double now = all[t].value(b.u(i));
+      if (i > 0 && std::isfinite(last[t]) && std::isfinite(now) && last[t] * now < 0.0) locate(b, i - 1, all[t], last[t], now, curve);
+      last[t] = now;
+    }
+  }
+  // Folds of the curve in the second parameter, found by the walker itself: thresholds.
+  for (const auto& s : b.special) {
+    if (s.type != EventType::fold) continue;
+    CodimensionTwo e;
+    e.type = b.points() > 0 && s.u[s.u.size() - 1] <= s.bracket[0] + 0.0 ? "MIN" : "MAX";
+    e.u = base(s.u);
+    e.residual = s.residual;
+    e.arclength = s.arclength;
+    curve.special.push_back(std::move(e));
+  }
+  return curve;
+}
+
+}  // namespace
+
+DefiningCurve follow(const Problem& problem2, const SpecialPoint& point, double p2, const TwoParameterOptions& options, const Observer& observer) {
+  if (problem2.parameters() != 2) throw std::invalid_argument("following a special point needs a problem with two free parameters");
+  if (problem2.derivatives() < 2) throw std::invalid_argument("following a special point needs second derivatives");
+  return Follower(problem2, point, options).run(p2, observer);
+}
+
+}  // namespace whirl::continuation

@@ -1,0 +1,48 @@
+#pragma once
+/// Curves of special points in two parameters, with the codimension-2 points on them.
+///
+///     const DefiningCurve curve = follow(problem2, point, {.range1 = {1.2, 2.4}, .range2 = {0.05, 0.8}});
+///
+/// `problem2` is the problem of the walk with a second free parameter (same residual, k = 2). The defining system of the point (augmented.hpp) is
+/// walked in the second parameter, both ways. On the way are located, each by its own test function along the curve:
+///
+///     on a fold curve     CP  cusp (the quadratic coefficient vanishes), BT  Bogdanov-Takens (w'v = 0), ZH  zero-Hopf (a pair crosses)
+///     on a Hopf curve     GH  generalised Hopf (l1 = 0), BT (frequency -> 0), ZH (a real eigenvalue crosses)
+///     on a branch-point curve   DP  degenerate pitchfork (the cubic coefficient vanishes: super- to subcritical), and LP of the curve itself:
+///     the least value of a parameter on any curve is its threshold, type "MIN"/"MAX" in the second parameter.
+
+#include "continuation/walker.hpp"
+
+namespace whirl::continuation {
+
+struct CodimensionTwo {
+  std::string type;  ///< CP, BT, ZH, GH, DP, or MIN / MAX: extremum of the second parameter along the curve
+  Vector u;          ///< (x, p1, p2)
+  double residual = 0.0;
+  double arclength = 0.0;
+};
+
+struct TwoParameterOptions {
+  double range1[2] = {0.0, 1.0};  ///< of the first parameter
+  double range2[2] = {0.0, 1.0};  ///< of the second
+  WalkOptions walk;               ///< lower and upper are set from range2
+  double tolerance = 1e-10;       ///< of codimension-2 points, relative
+};
+
+struct DefiningCurve {
+  EventType type = EventType::fold;
+  std::string subtype;
+  Matrix u;            ///< (x, p1, p2) in columns
+  Vector coefficient;  ///< normal-form coefficient at each column, NaN where undefined
+  Vector frequency;    ///< Hopf curves, rad per time unit; else 0
+  Vector residual;
+  std::vector<CodimensionTwo> special;
+  StopReason start_reason = StopReason::none, stop_reason = StopReason::none;
+  std::string name, born_at;
+};
+
+/// Follows the curve through `point` (of problem2 with p2 held at the value in `p2`). Throws std::invalid_argument if the point's type has no curve.
+DefiningCurve follow(const Problem& problem2, const SpecialPoint& point, double p2, const TwoParameterOptions& options,
+                     const Observer& observer = {});
+
+}  // namespace whirl::continuation

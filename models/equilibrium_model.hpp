@@ -1,0 +1,66 @@
+#pragma once
+/// An autonomous system given as text, x' = f(x, p), as an equilibrium problem: any one or two of its parameters, by name, are free.
+///
+///     EquilibriumModel m{.variables = {"x"}, .parameters = {{"mu", 0.1}}, .rhs = {"mu*x - x^3"}, .initial = {0.1}, .mirrors = {{{"x"}, "PF"}}};
+///     EquilibriumFlow flow(m, {"mu"});
+///     flow.residual(u, r);          // u = (x, mu), r = x'
+///
+/// Throws ExpressionError for text that cannot be read and std::invalid_argument, one line, for everything else.
+
+#include <string_view>
+
+#include "core/dual_problem.hpp"
+#include "models/expression.hpp"
+
+namespace whirl::models {
+
+/// Variables that change sign together without changing the equations.
+struct Mirror {
+  std::vector<std::string> variables;
+  std::string subtype = "PF";  ///< of a branch point that breaks the symmetry
+};
+
+struct EquilibriumModel {
+  struct Parameter {
+    std::string name;
+    double value;
+  };
+  std::vector<std::string> variables;
+  std::vector<Parameter> parameters;
+  std::vector<std::string> rhs;  ///< one for each variable
+  std::vector<double> initial;   ///< a guess, one for each variable
+  std::vector<Mirror> mirrors;
+
+  int size() const { return static_cast<int>(variables.size()); }
+  std::vector<std::string> parameter_names() const;
+  double parameter(std::string_view name) const;  ///< throws naming the accepted names
+  void validate() const;                          ///< shapes and names; not the text of rhs
+};
+
+/// The field in u = (variables, free parameters).
+class EquilibriumField {
+ public:
+  EquilibriumField(const EquilibriumModel& model, const std::vector<std::string>& lenses);
+
+  template <class S>
+  void residual(std::span<const S> u, std::span<S> r) const {
+    field_.evaluate<S>(u, r);
+  }
+  const EquilibriumModel& model() const { return model_; }
+  const VectorField& field() const { return field_; }
+
+ private:
+  EquilibriumModel model_;
+  VectorField field_;
+};
+
+class EquilibriumFlow : public DualProblem<EquilibriumField> {
+ public:
+  /// Refuses a mirror that the equations do not have: f(R x, p) = R f(x, p) is tested at random x and free p.
+  EquilibriumFlow(const EquilibriumModel& model, const std::vector<std::string>& lenses);
+
+ private:
+  void check_mirror(const Mirror& mirror, const Vector& signs) const;
+};
+
+}  // namespace whirl::models

@@ -1,0 +1,232 @@
+/// Vector fields given as text: values, exact derivatives, decimal numbers, precedence, and the one line every kind of bad text gives.
+
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <numbers>
+
+#include "models/equilibrium_model.hpp"
+#include "models/expression.hpp"
+
+using namespace whirl;
+using namespace whirl::models;
+
+namespace {
+
+double value(const std::string& text, double x = 0.7, double y = 1.3) {
+  const VectorField f({text}, {"x", "y"});
+  const double in[] = {x, y};
+  double out = 0.0;
+  f.evaluate<double>(in, std::span<double>(&out, 1));
+  return out;
+}
+
+std::string refusal(const std::vector<std::string>& equations, const std::vector<std::string>& inputs = {"x", "y", "q2"}) {
+  try {
+    const VectorField f(equations, inputs);
+  } catch (const ExpressionError& e) {
+    CHECK(std::string(e.what()).find('\n') == std::string::npos);
+    return e.what();
+  }
+  return "accepted";
+}
+
+EquilibriumModel carbon_monoxide() {
+  return {.variables = {"x", "y", "s"},
+          .parameters = {{"q1", 2.5}, {"q2", 1.0}, {"q3", 10.0}, {"q4", 0.0675}, {"q5", 1.0}, {"q6", 0.1}, {"k", 0.4}},
+          .rhs = {"2*q1*(1-x-y-s)^2 - 2*q5*x^2 - q3*x*y", "q2*(1-x-y-s) - q6*y - q3*x*y", "q4*((1-x-y-s) - k*s)"},
+          .initial = {0.01, 0.02, 0.4}};
+}
+
+struct Written {  // carbon_monoxide with q2 and k free, by hand
+  template <class S>
+  void residual(std::span<const S> u, std::span<S> r) const {
+    const S z = 1.0 - u[0] - u[1] - u[2];
+    r[0] = 5.0 * z * z - 2.0 * u[0] * u[0] - 10.0 * u[0] * u[1];
+    r[1] = u[3] * z - 0.1 * u[1] - 10.0 * u[0] * u[1];
+    r[2] = 0.0675 * (z - u[4] * u[2]);
+  }
+};
+
+}  // namespace
+
+TEST_CASE("decimal numbers in the text are the nearest doubles") {
+  CHECK(value("0.0675") == 0.0675);
+  CHECK(value("0.1 + 0.2") == 0.1 + 0.2);
+  CHECK(value("1e-300") == 1e-300);
+  CHECK(value("3.513830719125161") == 3.513830719125161);
+  CHECK(value("2.2250738585072014e-308") == 2.2250738585072014e-308);
+  CHECK(value("123456789012345678901234567890") == 123456789012345678901234567890.0);
+  CHECK(value(".5e1") == 5.0);
+  CHECK(value("1/3") == 1.0 / 3.0);
+  CHECK(value("pi") == std::numbers::pi);
+}
+
+TEST_CASE("precedence, signs and functions of text are those of arithmetic") {
+  const double x = 0.7, y = 1.3;
+  const std::pair<const char*, double> cases[] = {{"-x^2", -x * x},
+                                                  {"(-x)^2", x * x},
+                                                  {"1 - x - y", 1.0 - x - y},
+                                                  {"1 - (x - y)", 1.0 - (x - y)},
+                                                  {"x/y/2", x / y / 2.0},
+                                                  {"x/(y*2)", x / (y * 2.0)},
+                                                  {"x/y*2", x / y * 2.0},
+                                                  {"-x*y + 2", -x * y + 2.0},
+                                                  {"x*(-y) + 2", -x * y + 2.0},
+                                                  {"+x - (+y)", x - y},
+                                                  {"2*x^3*y", 2.0 * x * x * x * y},
+                                                  {"x^7", std::pow(x, 7)},
+                                                  {"x^(-2)", 1.0 / (x * x)},
+                                                  {"1/x^2 + 3/(1+x)", 1.0 / (x * x) + 3.0 / (1.0 + x)},
+                                                  {"x^0.5", std::sqrt(x)},
+                                                  {"x^(1/3)", std::cbrt(x)},
+                                                  {"x^2.5", std::pow(x, 2.5)},
+                                                  {"x^(-1.5)", std::pow(x, -1.5)},
+                                                  {"x^y", std::pow(x, y)},
+                                                  {"2^x", std::exp2(x)},
+                                                  {"(x^2)^y", std::pow(x * x, y)},
+                                                  {"x*x*x - x^3", 0.0},
+                                                  {"exp(x)*log(y)", std::exp(x) * std::log(y)},
+                                                  {"sin(x) + cos(y)*tan(x)", std::sin(x) + std::cos(y) * std::tan(x)},
+                                                  {"sinh(x) - cosh(y)/tanh(x)", std::sinh(x) - std::cosh(y) / std::tanh(x)},
+                                                  {"atan(x/y) + sqrt(x+y) + abs(x-y)", std::atan(x / y) + std::sqrt(x + y) + std::abs(x - y)},
+                                                  {"sqrt(2)*x", std::sqrt(2.0) * x},
+                                                  {"1/sqrt(x)", 1.0 / std::sqrt(x)},
+                                                  {"(1-x-y)^2/(1+(1-x-y)^2)", (1 - x - y) * (1 - x - y) / (1 + (1 - x - y) * (1 - x - y))}};
+  for (const auto& [text, expected] : cases) {
+    INFO(text);
+    CHECK(value(text) == Approx(expected).epsilon(4e-15).margin(1e-16));  // a few roundings: terms may be summed in another order
+  }
+  CHECK(value("abs(x)", -2.0) == 2.0);
+  CHECK(value("sqrt(x^2)", -2.0) == 2.0);
+}
+
+TEST_CASE("names of inputs hide the constants of the reader") {
+  const VectorField f({"I + Pi*Euler - pi + c0 + v1"}, {"I", "Pi", "Euler", "pi", "c0", "v1"});
+  const double in[] = {1.0, 2.0, 3.0, 4.0, 5.0, 6.0};
+  double out = 0.0;
+  f.evaluate<double>(in, std::span<double>(&out, 1));
+  CHECK(out == 14.0);
+}
+
+TEST_CASE("derivatives of text are exact in nested duals") {
+  // f = x^3 y + exp(x y) + x^2.5 / (1 + y^2), its derivatives by hand
+  const VectorField f({"x^3*y + exp(x*y) + x^2.5/(1 + y^2)"}, {"x", "y"});
+  using D = Dual<Dual<double, 2>, 2>;
+  const double x = 0.8, y = 0.6, e = std::exp(x * y), q = 1.0 + y * y;
+  std::array<D, 2> in;
+  const double at[] = {x, y};
+  for (std::size_t i = 0; i < 2; ++i) {
+    in[i] = D(seed<Dual<double, 2>>(at[i], static_cast<int>(i)));
+    in[i].d[i] = 1.0;
+  }
+  D out;
+  f.evaluate<D>(in, std::span<D>(&out, 1));
+  CHECK(out.v.v == Approx(x * x * x * y + e + std::pow(x, 2.5) / q).epsilon(1e-14));
+  CHECK(out.v.d[0] == Approx(3 * x * x * y + y * e + 2.5 * std::pow(x, 1.5) / q).epsilon(1e-14));
+  CHECK(out.v.d[1] == Approx(x * x * x + x * e - std::pow(x, 2.5) * 2 * y / (q * q)).epsilon(1e-14));
+  CHECK(out.d[0].d[0] == Approx(6 * x * y + y * y * e + 3.75 * std::sqrt(x) / q).epsilon(1e-14));
+  CHECK(out.d[0].d[1] == Approx(3 * x * x + e + x * y * e - 2.5 * std::pow(x, 1.5) * 2 * y / (q * q)).epsilon(1e-14));
+}
+
+TEST_CASE("the field from text equals the field written by hand, with all derivatives") {
+  const EquilibriumFlow text(carbon_monoxide(), {"q2", "k"});
+  const DualProblem<Written> hand({}, 3, 2, true);
+  CHECK(text.parameter_names() == std::vector<std::string>{"q2", "k"});
+  Vector u(5), a = Vector::Random(5), b = Vector::Random(5), c = Vector::Random(5), r(3), s(3);
+  u << 0.03, 0.2, 0.5, 1.1, 0.4;
+  Matrix j(3, 5), h(3, 5), i(3, 5), g(3, 5);
+  text.linearise(u, r, j);
+  hand.linearise(u, s, i);
+  CHECK((r - s).norm() < 1e-15);  // rounding of sums of size 1
+  CHECK((j - i).norm() < 1e-14);
+  text.second(u, a, h);
+  hand.second(u, a, g);
+  CHECK((h - g).norm() < 1e-13);
+  text.third(u, a, b, c, r);
+  hand.third(u, a, b, c, s);
+  CHECK((r - s).norm() < 1e-13);
+  const double step = 1e-6;
+  for (int k = 0; k < 5; ++k) {
+    Vector up = u, down = u, rp(3), rm(3);
+    up[k] += step;
+    down[k] -= step;
+    text.residual(up, rp);
+    text.residual(down, rm);
+    CHECK((j.col(k) - (rp - rm) / (2.0 * step)).norm() < 1e-8);  // second differences: step^2 and rounding / step
+  }
+}
+
+TEST_CASE("fixed numbers are computed into the steps and shared parts run once") {
+  const VectorField f({"a*b*x + c*(a+b)", "sin(x)^2 + sin(x)"}, {"x", "a", "b", "c"});
+  const VectorField g = f.rebound({0, 2.0, 3.0, 4.0}, 1);
+  CHECK(g.inputs() == 1);
+  CHECK(g.steps().size() == 5);  // scale, offset; sin, square, sum
+  double x = 0.3, out[2];
+  g.evaluate<double>(std::span<const double>(&x, 1), out);
+  CHECK(out[0] == Approx(6.0 * x + 20.0).epsilon(1e-15));
+  CHECK(out[1] == Approx(std::sin(x) * std::sin(x) + std::sin(x)).epsilon(1e-15));
+  CHECK_THROWS_AS(f.rebound({0, 1.0}, 1), std::invalid_argument);
+  CHECK_THROWS_AS(VectorField({"x/a"}, {"x", "a"}).rebound({0, 0.0}, 1), std::invalid_argument);  // infinite whatever x
+}
+
+TEST_CASE("bad text gives one line with the equation's number") {
+  CHECK(refusal({"x", "q9*y"}) == "equation 2: unknown symbol 'q9', did you mean q2?");
+  CHECK(refusal({"zebra*y"}) == "equation 1: unknown symbol 'zebra'; known are x, y, q2");
+  CHECK(refusal({"sine(x)"}) == "equation 1: unknown symbol 'sine', did you mean sin?");
+  CHECK(refusal({"(x + (y)"}) == "equation 1: unbalanced: 1 '(' not closed");
+  CHECK(refusal({"x + y)"}) == "equation 1: unbalanced: ')' at character 6 closes nothing");
+  CHECK(refusal({""}) == "equation 1: is empty");
+  CHECK(refusal({"  "}) == "equation 1: is empty");
+  CHECK(refusal({"x +"}) == "equation 1: ends with '+' where a value must follow");
+  CHECK(refusal({"2x"}) == "equation 1: '2' and 'x' stand side by side at character 2: write * between them");
+  CHECK(refusal({"2(x)"}) == "equation 1: '2' and '(' stand side by side at character 2: write * between them");
+  CHECK(refusal({"x(y)"}) == "equation 1: 'x' and '(' stand side by side at character 2: write * between them");
+  CHECK(refusal({"x*-y"}) == "equation 1: a sign behind '*' needs parentheses at character 3");
+  CHECK(refusal({"x--y"}) == "equation 1: a sign behind '-' needs parentheses at character 3");
+  CHECK(refusal({"x^y^2"}) == "equation 1: x^y^z needs parentheses at character 4");
+  CHECK(refusal({"x^(y)^2"}) == "equation 1: x^y^z needs parentheses at character 6");
+  CHECK(refusal({"x**2"}) == "equation 1: a value is missing before '*' at character 3");
+  CHECK(refusal({"()"}) == "equation 1: a value is missing before ')' at character 2");
+  CHECK(refusal({"sin x"}) == "equation 1: function sin needs parentheses: sin(...)");
+  CHECK(refusal({"sin + x"}) == "equation 1: function sin needs parentheses: sin(...)");
+  CHECK(refusal({"sin(x, y)"}) == "equation 1: ',' at character 6 is not understood");
+  CHECK(refusal({"x = y"}) == "equation 1: '=' at character 3 is not understood");
+  CHECK(refusal({"x\xc2\xb2"}) == "equation 1: a character that is not plain text at character 2");
+  CHECK(refusal({"1.2.3"}) == "equation 1: not a number at character 1");
+  CHECK(refusal({"1e999"}) == "equation 1: the number 1e999 is out of range");
+  CHECK(refusal({"x/(y-y)"}) == "equation 1: divides by zero");
+  CHECK(refusal({"x + 1/0"}) == "equation 1: is not a finite number");
+  CHECK(refusal({"1/0"}) == "equation 1: is not a finite number");
+  CHECK(refusal({"log(0)*x"}) == "equation 1: is not a finite number");
+  CHECK(refusal({"9^9^9"}) == "equation 1: x^y^z needs parentheses at character 4");
+  CHECK(refusal({"(9^9)^(9^9)"}) == "equation 1: is not a finite number");  // and not a number of 10^9 digits
+  CHECK(refusal({std::string(300, '(') + "x" + std::string(300, ')')}) == "equation 1: more than 200 parentheses in each other");
+  CHECK(refusal({std::string(20001, 'x')}) == "equation 1: longer than 20000 characters");
+  CHECK(refusal({"x"}, {"x", "x"}) == "the name 'x' is given twice");
+  CHECK(refusal({"x"}, {"x", "2y"}) == "'2y' is no name: letters, digits and _ only, a letter first");
+  CHECK(refusal({"x"}, {"sin"}) == "'sin' is the name of a function");
+}
+
+TEST_CASE("mirrors are tested against the equations") {
+  EquilibriumModel m{.variables = {"x", "y"},
+                     .parameters = {{"mu", 0.1}, {"tilt", 0.0}},
+                     .rhs = {"mu*x - x^3 + tilt + x*y", "x^2 - y"},
+                     .initial = {0.1, 0.0},
+                     .mirrors = {{{"x"}, "WH"}}};
+  const EquilibriumFlow flow(m, {"mu"});
+  REQUIRE(flow.reflections().size() == 1);
+  CHECK(flow.reflections()[0].signs == Eigen::Vector2d(-1.0, 1.0));
+  CHECK(flow.reflections()[0].subtype == "WH");
+  CHECK_THROWS_WITH(EquilibriumFlow(m, {"tilt"}), "changing the sign of x changes the equations: no symmetry");
+  m.mirrors = {{{"x", "y"}}};
+  CHECK_THROWS_WITH(EquilibriumFlow(m, {"mu"}), "changing the sign of x, y changes the equations: no symmetry");
+  m.mirrors = {{{"w"}}};
+  CHECK_THROWS_WITH(EquilibriumFlow(m, {"mu"}), "a reflection of 'w', which is no variable; the variables are x, y");
+  m.mirrors = {};
+  CHECK_THROWS_WITH(EquilibriumFlow(m, {"nu"}), "no parameter 'nu'; the model has mu, tilt");
+  CHECK_THROWS_WITH(EquilibriumFlow(m, {"mu", "mu"}), "the parameter mu is free twice");
+  m.initial = {0.1};
+  CHECK_THROWS_WITH(EquilibriumFlow(m, {"mu"}), "1 initial values for 2 variables");
+  m.rhs = {"x"};
+  CHECK_THROWS_WITH(EquilibriumFlow(m, {"mu"}), "1 equations for 2 variables");
+}

@@ -1,0 +1,276 @@
+#!/usr/bin/python3
+"""plots-scripts/plot on small made-up results: figures exist and show something, bad files give one line and status 2.
+Usage: test_plots.py [PLOT]"""
+import os
+import subprocess
+import sys
+import tempfile
+import traceback
+
+import h5py
+import numpy as np
+
+sys.dont_write_bytecode = True
+REPOSITORY = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
+PLOT = os.path.abspath(sys.argv[1]) if len(sys.argv) > 1 else os.path.join(REPOSITORY, "plots-scripts", "plot")
+sys.path.insert(0, os.path.dirname(PLOT))
+
+
+# --- made-up results -------------------------------------------------------------------------------------------------------
+
+def table(file, path, columns, units="m"):
+    group = file.require_group(path)
+    for name, values in columns.items():
+        text = isinstance(values[0], str)
+        group[name] = np.array(values, dtype=h5py.string_dtype() if text else float)
+        group[name].attrs["units"] = "rad/s" if name == "omega" else units
+        group[name].attrs["description"] = "continuation parameter" if name == "omega" else name
+    return group
+
+
+def branch(file, name, omega, A, B, n_unstable):
+    table(file, f"/branches/{name}", {"omega": omega, "q1_h2": A, "q2_h2": B, "n_unstable": n_unstable,
+                                      "arclength": np.arange(len(omega), dtype=float)})
+
+
+def study(file, kind):
+    attributes = {"kind": kind, "outcome": "complete", "continuation.parameter": "omega", "response.order": 2.0,
+                  "support_motion.amplitude": 0.5, "damping.out_of_plane": 0.01, "damping.in_plane": 0.02,
+                  "model.terms": "reduced", "cable.coefficients": "exact"}
+    for key, value in attributes.items():
+        file.require_group("study").attrs[key] = value
+
+
+def branches(file):
+    """In plane from 1 to 2 rad/s, unstable beyond the whirling point at 1.45; whirling from there to a fold at 1.95."""
+    omega = np.linspace(1, 2, 11)
+    branch(file, "IP1", omega, 0 * omega, omega, omega > 1.45)
+    s = np.linspace(0, 1, 12)
+    branch(file, "W1", 1.45 + 2 * s * (1 - 0.5 * s) * 0.5, 2 * s, 1.45 + s, s > 0.9)
+    table(file, "/special_points", {
+        "branch": ["IP1", "W1"], "label": ["BP1", "LP1"], "type": ["BP", "LP"], "subtype": ["WH", ""], "omega": [1.45, 1.94],
+        "q1_h2": [0.0, 1.8], "q2_h2": [1.45, 2.35], "arclength": [4.5, 9.9], "unstable_before": [0, 0], "unstable_after": [1, 1]})
+
+
+def wave(omega, n1, a1, a2, samples, closed):
+    t = np.linspace(0, 2 * np.pi / omega, samples, endpoint=closed)
+    return {"t": t, "q1": a1 * np.cos(n1 * omega * t), "q2": 0.5 * np.cos(omega * t) + a2 * np.sin(2 * omega * t)}
+
+
+def run_rows(omega, A, B, motion, multiple):
+    rows = {"omega": omega, "motion": motion, "multiple": multiple}
+    for i, amplitude in ((1, A), (2, B)):
+        for k in range(6):
+            rows[f"q{i}_h{k}"] = np.array(amplitude) if k == 2 else 0.1 * np.array(amplitude)
+    return rows
+
+
+def verification(file):
+    """At 1.2 rad/s in plane, from two starts; at 1.6 rad/s whirling; one sweep; one failed run."""
+    omega, A, B = [1.2, 1.2, 1.6, 1.6], [0, 0, 0.7, np.nan], [1.1, 1.1, 1.5, np.nan]
+    table(file, "/verification/runs", run_rows(omega, A, B, ["periodic"] * 3 + ["failed"], [1, 1, 1, 0]))
+    for run in range(3):
+        group = table(file, f"/verification/series/run{run + 1}", wave(omega[run], 2, A[run], B[run], 64, False))
+        group.attrs.update({"omega": omega[run], "motion": "periodic", "multiple": 1.0, "start": "rest"})
+        table(file, f"/verification/spectra/run{run + 1}",
+              {"harmonic": np.arange(9.0), "q1": A[run] * 10.0 ** -np.arange(9), "q2": B[run] * 10.0 ** -np.arange(9)})
+    for name, w, a, b in (("w1.2000-1", 1.2, 0, 1.2), ("w1.6000-1", 1.6, 0, 1.6), ("w1.6000-2", 1.6, 0.4, 1.6)):
+        group = table(file, f"/verification/averaged/{name}", wave(w, 2, a, b, 257, True))
+        group.attrs.update({"omega": w, "branch": "IP1", "stable": float(name != "w1.6000-1")})
+    sweep = run_rows([1.1, 1.3, 1.5, 1.7], [0, 0, 0.5, 0], [1.0, 1.2, 1.4, 0.3], ["periodic"] * 4, [1, 1, 1, 2])
+    table(file, "/verification/sweep_up", sweep)
+
+
+def orbits(file):
+    for k in (1, 2):
+        group = file.require_group(f"/orbits/pair{k}")
+        group.attrs.update({"damping_out_of_plane": 0.01, "damping_in_plane": 0.01 * (k - 1), "omega": 1.65})
+        averaged = table(file, f"/orbits/pair{k}/averaged", wave(1.65, 2, 1.5, 2, 257, True))
+        averaged.attrs.update({"omega": 1.65, "stable": float(k - 1), "branch": "whirling"})
+        integrated = table(file, f"/orbits/pair{k}/integrated", wave(1.65, 2, -1.8, 2.2, 64, False))
+        integrated.attrs.update({"omega": 1.65, "motion": "periodic", "multiple": 1.0})
+
+
+def superharmonic(path):
+    with h5py.File(path, "w") as file:
+        study(file, "superharmonic")
+        file["cable/omega1"] = 3.0
+        branches(file)
+        verification(file)
+        orbits(file)
+
+
+def other_kind(path):
+    """A kind without figures of its own, killed before its special points were written."""
+    with h5py.File(path, "w") as file:
+        study(file, "some-new/../kind")
+        del file["study"].attrs["outcome"]
+        omega = np.linspace(1, 2, 11)
+        branch(file, "main", omega, omega**2, omega, omega > 1.5)
+
+
+# --- helpers ---------------------------------------------------------------------------------------------------------------
+
+def plot(*arguments):
+    return subprocess.run([PLOT, *arguments], capture_output=True, text=True, timeout=300)
+
+
+def check(condition, words):
+    if not condition:
+        raise AssertionError(words)
+
+
+def check_picture(path):
+    """A PNG of a page's size with ink of several colours on it."""
+    from matplotlib.image import imread
+    pixels = imread(path)
+    check(pixels.shape[0] > 300 and pixels.shape[1] > 500, f"{path}: {pixels.shape}")
+    colours = np.unique((pixels[..., :3] * 15).astype(int).reshape(-1, 3), axis=0)
+    ink = np.mean(np.any(pixels[..., :3] < 0.9, axis=-1))
+    check(len(colours) > 20 and 0.005 < ink < 0.6, f"{path}: {len(colours)} colours, {ink:.3f} of it inked")
+
+
+def check_document(path):
+    with open(path, "rb") as file:
+        content = file.read()
+    whole = content.startswith(b"%PDF-") and b"%%EOF" in content[-64:]
+    check(whole and b"/FontFile2" in content, f"{path}: not a PDF with vector fonts")
+
+
+def check_refused(folder, name, words):
+    before = sorted(os.listdir(folder))
+    done = plot(os.path.join(folder, name))
+    check(done.returncode == 2, f"{name}: status {done.returncode}, {done.stderr}")
+    check(done.stderr.count("\n") == 1 and name in done.stderr and words in done.stderr, f"{name}: {done.stderr}")
+    check(done.stdout == "" and sorted(os.listdir(folder)) == before, f"{name}: something was written")
+
+
+# --- tests -----------------------------------------------------------------------------------------------------------------
+
+def test_superharmonic_figures(folder):
+    path = os.path.join(folder, "made-up.h5")
+    superharmonic(path)
+    done = plot(path)
+    check(done.returncode == 0 and done.stderr == "", done.stderr)
+    names = ["response", "orbits", "orbits-verification", "spectrum", "time", "error"]
+    expected = sorted(os.path.join(folder, f"made-up-{n}.{f}") for n in names for f in ("png", "pdf"))
+    check(sorted(done.stdout.split("\n")[:-1]) == expected, done.stdout)
+    check(sorted(os.listdir(folder)) == sorted(["made-up.h5"] + [os.path.basename(p) for p in expected]), "stray files")
+    for p in expected:
+        (check_picture if p.endswith("png") else check_document)(p)
+
+
+def test_folder_and_format(folder):
+    path, target = os.path.join(folder, "made-up.h5"), os.path.join(folder, "deep", "figures")
+    superharmonic(path)
+    done = plot(path, "-o", target, "--format", "png")
+    check(done.returncode == 0, done.stderr)
+    check(len(os.listdir(target)) == 6 and all(n.endswith(".png") for n in os.listdir(target)), str(os.listdir(target)))
+    check(sorted(os.listdir(folder)) == ["deep", "made-up.h5"], "figures beside the file as well")
+
+
+def test_other_kind_gets_bifurcation_diagram(folder):
+    path = os.path.join(folder, "other.h5")
+    other_kind(path)
+    done = plot(path, "--format", "png")
+    check(done.returncode == 0 and os.listdir(folder).count("other-branches.png") == 1, done.stderr)
+    check_picture(os.path.join(folder, "other-branches.png"))
+
+
+def test_stability_segments(folder):
+    """Segments change at the special points, not at the computed points beside them."""
+    from figures_common import knots_of
+    from result_file import read
+    path = os.path.join(folder, "made-up.h5")
+    superharmonic(path)
+    knots = knots_of(read(path), "IP1", ["omega"])
+    pieces = [(stable, *knots.columns["omega"][[first, last]]) for stable, first, last in knots.pieces()]
+    check(np.allclose(pieces, [(1, 1, 1.45), (0, 1.45, 2)]), str(pieces))
+
+
+def test_error_against_nearest_stable(folder):
+    """The unstable in-plane state at 1.6 rad/s is no partner; runs that settle on one motion count once."""
+    from result_file import read
+    from superharmonic_motions import AveragedBranches, compare, distinct_motions
+    path = os.path.join(folder, "made-up.h5")
+    superharmonic(path)
+    result = read(path)
+    motions = distinct_motions(result)
+    check([(m.omega, m.runs) for m in motions] == [(1.2, 2), (1.6, 1)], str(motions))
+    states = AveragedBranches(result, 2)
+    planar, whirling = (compare(states.at(m.omega), m) for m in motions)
+    check(np.isclose(planar.error["B"], 1.2 - 1.1) and planar.counterpart, str(planar))
+    check(len(states.at(1.0)) == 1 and len(states.at(2.0)) == 1 and not states.at(2.1), "states at the ends of the range")
+    check(whirling.averaged.stable and whirling.averaged.A > 0.2 and whirling.counterpart, str(whirling))
+
+
+def test_truncated(folder):
+    path = os.path.join(folder, "whole.h5")
+    superharmonic(path)
+    with open(path, "rb") as file:
+        content = file.read()
+    os.unlink(path)
+    for share in (0.9, 0.5, 0.1):
+        with open(os.path.join(folder, "cut.h5"), "wb") as file:
+            file.write(content[:int(share * len(content))])
+        check_refused(folder, "cut.h5", "truncated")
+
+
+def test_damaged(folder):
+    path = os.path.join(folder, "damaged.h5")
+    superharmonic(path)
+    with open(path, "r+b") as file:
+        file.seek(1000)
+        file.write(b"\xff" * 3000)
+    check_refused(folder, "damaged.h5", "")
+
+
+def test_not_results(folder):
+    os.mkdir(os.path.join(folder, "folder.h5"))
+    check_refused(folder, "folder.h5", "directory")
+    check_refused(folder, "missing.h5", "No such file")
+    with open(os.path.join(folder, "text.h5"), "w") as file:
+        file.write("omega = 1.5\n" * 100)
+    check_refused(folder, "text.h5", "not an HDF5 file")
+    open(os.path.join(folder, "empty.h5"), "w").close()
+    check_refused(folder, "empty.h5", "empty")
+    with h5py.File(os.path.join(folder, "alien.h5"), "w") as file:
+        file["data"] = np.arange(3)
+    check_refused(folder, "alien.h5", "not a result")
+    with h5py.File(os.path.join(folder, "early.h5"), "w") as file:
+        study(file, "superharmonic")
+    check_refused(folder, "early.h5", "nothing to draw")
+
+
+def test_missing_column(folder):
+    path = os.path.join(folder, "lacking.h5")
+    superharmonic(path)
+    with h5py.File(path, "r+") as file:
+        del file["branches/W1/q2_h2"]
+    check_refused(folder, "lacking.h5", "/branches/W1/q2_h2")
+
+
+def test_bad_command_line(folder):
+    path = os.path.join(folder, "made-up.h5")
+    superharmonic(path)
+    for arguments in ([path, "--format", "gif"], [], [path, "-o", path]):
+        done = plot(*arguments)
+        check(done.returncode == 2 and done.stderr.count("\n") == 1, done.stderr)
+    check(os.listdir(folder) == ["made-up.h5"], "something was written")
+
+
+def main():
+    tests = [(name, test) for name, test in globals().items() if name.startswith("test_")]
+    failed = 0
+    for name, test in tests:
+        try:
+            with tempfile.TemporaryDirectory() as folder:
+                test(folder)
+        except Exception:
+            failed += 1
+            print(f"FAILED {name}\n{traceback.format_exc()}")
+    print(f"{len(tests) - failed} passed, {failed} failed")
+    return 1 if failed else 0
+
+
+sys.exit(main())
