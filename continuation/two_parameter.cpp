@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <Eigen/Eigenvalues>
+#include <algorithm>
 #include <cmath>
 
 #include "continuation/augmented.hpp"
@@ -93,6 +94,8 @@ class Follower {
   Vector base(In y) const { return system_->base_point(y); }
   double crossing_pair(In y) const;  // real part of the least damped pair away from the critical ones
   double crossing_real(In y) const;
+  bool mirrored(const Vector& a, const Vector& b) const;  // did the part that breaks a symmetry pass zero between a and b?
+  bool symmetric(const Vector& u) const;                  // is that part zero next to the rest?
   void locate(const Branch& b, int i, const Test& test, double from, double to, DefiningCurve& curve);
 
   const Problem& f_;
@@ -139,6 +142,26 @@ double Follower::crossing_real(In y) const {
   for (const auto& z : e)
     if (z.imag() == 0.0 && !(std::abs(z.real()) > std::abs(best))) best = z.real();
   return best;
+}
+
+bool Follower::mirrored(const Vector& a, const Vector& b) const {
+  for (int r = 0; r < static_cast<int>(f_.reflections().size()); ++r) {
+    if (std::find(blocks_.active.begin(), blocks_.active.end(), r) != blocks_.active.end()) continue;
+    double product = 0.0;
+    for (int i : odd_coordinates(f_, r)) product += a[i] * b[i];
+    if (product < 0.0) return true;
+  }
+  return false;
+}
+
+bool Follower::symmetric(const Vector& u) const {
+  for (int r = 0; r < static_cast<int>(f_.reflections().size()); ++r) {
+    if (std::find(blocks_.active.begin(), blocks_.active.end(), r) != blocks_.active.end()) continue;
+    double odd = 0.0;
+    for (int i : odd_coordinates(f_, r)) odd = std::max(odd, std::abs(u[i]));
+    if (odd < 1e-2 * u.head(f_.size()).norm()) return true;
+  }
+  return false;
 }
 
 std::vector<Test> Follower::tests() const {
@@ -198,6 +221,7 @@ void Follower::locate(const Branch& b, int i, const Test& test, double from, dou
   s.u = base(m.u);
   s.residual = m.residual;
   s.arclength = b.arclength(i) + lo * (b.arclength(i + 1) - b.arclength(i));
+  if (symmetric(s.u)) return;  // where the curve meets its mirror image its state is symmetric: the degenerate point of the branch-point curve
   curve.special.push_back(std::move(s));
 }
 
@@ -217,8 +241,9 @@ DefiningCurve Follower::run(double p2, const Observer& observer) {
   const Observer watch = [&](const Branch& b, int i) {
     if (++fresh % 10 == 0) system_->update_borders(b.u(i));  // keeps the borders near the null vectors as they turn
     const auto* hopf = dynamic_cast<const HopfSystem*>(system_.get());
-    if (hopf && hopf->kappa(b.u(i)) < 0.0) why = StopReason::bogdanov_takens;  // beyond: neutral saddles
-    else if (!inside(b.u(i)[p1_column])) why = StopReason::parameter_bound;    // of the first parameter
+    if (i > 0 && mirrored(base(b.u(i - 1)), base(b.u(i)))) why = StopReason::symmetric_branch;
+    else if (hopf && hopf->kappa(b.u(i)) < 0.0) why = StopReason::bogdanov_takens;  // beyond: neutral saddles
+    else if (!inside(b.u(i)[p1_column])) why = StopReason::parameter_bound;         // of the first parameter
     else if (observer && !observer(b, i)) why = StopReason::observer;
     return why == StopReason::none;
   };
@@ -272,6 +297,7 @@ DefiningCurve Follower::run(double p2, const Observer& observer) {
     e.u = base(s.u);
     e.residual = s.residual;
     e.arclength = s.arclength;
+    if (symmetric(e.u)) continue;
     curve.special.push_back(std::move(e));
   }
   return curve;
