@@ -109,6 +109,33 @@ def other_kind(path):
         branch(file, "main", omega, omega**2, omega, omega > 1.5)
 
 
+def curve(file, name, kind, subtype, omega, U, coefficient, A):
+    columns = {"omega": omega, "support_motion.amplitude": U, "q1_h2": A, "q2_h2": 1 + 0 * A, "coefficient": coefficient,
+               "frequency": 0 * A, "residual": 0 * A}
+    table(file, f"/curves/{name}", columns).attrs.update({"type": kind, "subtype": subtype, "born_at": "IP1:BP1"})
+
+
+def two_parameter(path):
+    """A parabola of whirling points, least at (1.6, 0.3) and degenerate at (1.55, 0.305); a fold curve from there;
+    a fold curve with a cusp at (1.8, 0.4) and a Hopf curve that ends on it."""
+    with h5py.File(path, "w") as file:
+        study(file, "two-parameter")
+        file["study"].attrs.update({"second.parameter": "support_motion.amplitude", "continuation.range": [1.2, 2.2],
+                                    "second.range": [0.2, 0.7]})
+        s = np.linspace(-0.32, 0.37, 24)
+        curve(file, "WH1", "BP", "WH", 1.6 + s, 0.3 + 2 * s**2, s + 0.05, 0 * s)
+        s = np.linspace(0, 1, 12)
+        curve(file, "LP2", "LP", "", 1.55 + 0.5 * s**2, 0.305 - 0.04 * s**2, s, s)
+        s = np.linspace(-0.62, 0.61, 30)
+        curve(file, "LP3", "LP", "", 1.8 + s**2, 0.4 + 0.6 * s**2 + 0.2 * s**3, s, 2 + s)
+        s = np.linspace(0.4, 0.6, 12)
+        curve(file, "HB4", "HB", "", 1.8 + s**2, 0.4 + 0.6 * s**2 + 0.25 * s**3 - 0.0032, np.where(s > 0.4, -1, np.nan), 2 + s)
+        table(file, "/special_points", {
+            "curve": ["WH1", "WH1", "LP3", "LP3", "LP3", "HB4"], "type": ["DP", "MIN", "CP", "MIN", "BT", "BT"],
+            "omega": [1.55, 1.6, 1.8, 1.8, 1.96, 1.96],
+            "support_motion.amplitude": [0.305, 0.3, 0.4, 0.4, 0.5088, 0.5088], "residual": [0.0] * 6})
+
+
 # --- helpers ---------------------------------------------------------------------------------------------------------------
 
 def plot(*arguments):
@@ -202,6 +229,49 @@ def test_error_against_nearest_stable(folder):
     check(np.isclose(planar.error["B"], 1.2 - 1.1) and planar.counterpart, str(planar))
     check(len(states.at(1.0)) == 1 and len(states.at(2.0)) == 1 and not states.at(2.1), "states at the ends of the range")
     check(whirling.averaged.stable and whirling.averaged.A > 0.2 and whirling.counterpart, str(whirling))
+
+
+def test_two_parameter_chart(folder):
+    path = os.path.join(folder, "plane.h5")
+    two_parameter(path)
+    done = plot(path)
+    check(done.returncode == 0 and done.stderr == "", done.stderr)
+    check(sorted(os.listdir(folder)) == ["plane-chart.pdf", "plane-chart.png", "plane.h5"], str(os.listdir(folder)))
+    check_picture(os.path.join(folder, "plane-chart.png"))
+    check_document(os.path.join(folder, "plane-chart.pdf"))
+
+
+def test_two_parameter_reading(folder):
+    """A place has one point; whirling curves change line at the degenerate pitchfork; a cusp is sharp, and of its own curve."""
+    from figures_two_parameter import curve_of, points_of
+    from result_file import read
+    path = os.path.join(folder, "plane.h5")
+    two_parameter(path)
+    result, axes, scale = read(path), ("omega", "support_motion.amplitude"), np.array([1.0, 0.5])
+    points = points_of(result, *axes, scale)
+    check([(p.kind, p.curve) for p in points] == [("DP", "WH1"), ("BT", "LP3"), ("CP", "LP3"), ("threshold", "WH1")], str(points))
+    check(points[1].curves == {"LP3", "HB4"}, str(points[1]))
+    wh, lp3 = (curve_of(result, name, *axes, scale, points) for name in ("WH1", "LP3"))
+    pieces = [(line, *wh.xy[[first, last], 0]) for line, first, last in wh.pieces()]
+    check([p[0] for p in pieces] == ["solid", "dotted"], str(pieces))
+    check(np.allclose([p[1:] for p in pieces], [(1.28, 1.55), (1.55, 1.97)]), str(pieces))
+    check(len(lp3.xy) == 31 and np.allclose(lp3.xy[np.argmin(lp3.xy[:, 0])], (1.8, 0.4)), str(lp3.xy))
+
+
+def test_two_parameter_cut_short(folder):
+    """Killed before the special points were written, with folds alone; and before the first curve."""
+    path = os.path.join(folder, "plane.h5")
+    two_parameter(path)
+    with h5py.File(path, "r+") as file:
+        for name in ("special_points", "curves/WH1", "curves/HB4"):
+            del file[name]
+        del file["study"].attrs["outcome"]
+    done = plot(path, "--format", "png")
+    check(done.returncode == 0 and done.stderr == "", done.stderr)
+    check_picture(os.path.join(folder, "plane-chart.png"))
+    with h5py.File(path, "r+") as file:
+        del file["curves"]
+    check_refused(folder, "plane.h5", "nothing to draw")
 
 
 def test_truncated(folder):
