@@ -60,7 +60,8 @@ void EquilibriumModel::validate() const {
     if (mirror.variables.empty()) throw std::invalid_argument("a reflection without variables");
     for (const auto& name : mirror.variables)
       if (index_in(variables, name) < 0)
-        throw std::invalid_argument(fmt::format("a reflection of '{}', which is no variable; the variables are {}", name, fmt::join(variables, ", ")));
+        throw std::invalid_argument(
+            fmt::format("a reflection of '{}', which is no variable; the variables are {}", name, fmt::join(variables, ", ")));
   }
 }
 
@@ -104,7 +105,8 @@ void EquilibriumFlow::check_mirror(const Mirror& mirror, const Vector& signs) co
     if ((s - signs.cwiseProduct(r)).norm() > 1e-9 * (r.norm() + s.norm()))
       throw std::invalid_argument(fmt::format("changing the sign of {} changes the equations: no symmetry", fmt::join(mirror.variables, ", ")));
   }
-  if (tested == 0) throw std::invalid_argument(fmt::format("the sign change of {} could not be tested: f is not finite", fmt::join(mirror.variables, ", ")));
+  if (tested == 0)
+    throw std::invalid_argument(fmt::format("the sign change of {} could not be tested: f is not finite", fmt::join(mirror.variables, ", ")));
 }
 
 }  // namespace whirl::models

@@ -16,7 +16,9 @@ namespace whirl::models {
 using Op = Step::Op;
 
 ExpressionError::ExpressionError(int equation_number, const std::string& why)
-    : std::invalid_argument(equation_number > 0 ? fmt::format("equation {}: {}", equation_number, why) : why), equation(equation_number), reason(why) {}
+    : std::invalid_argument(equation_number > 0 ? fmt::format("equation {}: {}", equation_number, why) : why),
+      equation(equation_number),
+      reason(why) {}
 
 namespace {
 
@@ -28,8 +30,9 @@ struct Function {
   std::string_view name;
   Op op;
 };
-constexpr Function functions[] = {{"exp", Op::exp},   {"log", Op::log},   {"sin", Op::sin},   {"cos", Op::cos},   {"tan", Op::tan}, {"sinh", Op::sinh},
-                                  {"cosh", Op::cosh}, {"tanh", Op::tanh}, {"atan", Op::atan}, {"sqrt", Op::sqrt}, {"abs", Op::abs}};
+constexpr Function functions[] = {{"exp", Op::exp},   {"log", Op::log},   {"sin", Op::sin},   {"cos", Op::cos},
+                                  {"tan", Op::tan},   {"sinh", Op::sinh}, {"cosh", Op::cosh}, {"tanh", Op::tanh},
+                                  {"atan", Op::atan}, {"sqrt", Op::sqrt}, {"abs", Op::abs}};
 const Function* function(std::string_view name) {
   const auto it = std::find_if(std::begin(functions), std::end(functions), [&](const Function& f) { return f.name == name; });
   return it == std::end(functions) ? nullptr : it;
@@ -397,7 +400,8 @@ class Flattener {
 
 }  // namespace
 
-VectorField::VectorField(const std::vector<std::string>& equations, const std::vector<std::string>& inputs) : inputs_(static_cast<int>(inputs.size())) {
+VectorField::VectorField(const std::vector<std::string>& equations, const std::vector<std::string>& inputs)
+    : inputs_(static_cast<int>(inputs.size())) {
   check_names(inputs);
   static std::mutex one_at_a_time;  // GiNaC counts references without locks
   const std::lock_guard lock(one_at_a_time);

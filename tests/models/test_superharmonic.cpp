@@ -110,7 +110,7 @@ TEST_CASE("closed forms give all steady states") {
   for (const auto& x : in_plane_states(at(1.8))) B.push_back(x.norm());
   std::sort(B.rbegin(), B.rend());
   REQUIRE(B.size() == 3);
-  CHECK(B[0] == Approx(4.401911427).epsilon(2e-10));  // half a unit of the last printed digit
+  CHECK(B[0] == Approx(4.401911427).epsilon(2e-10));    // half a unit of the last printed digit
   CHECK(B[1] == Approx(3.03928378421).epsilon(2e-11));  // AUTO-07p and an independent Newton agree to these digits
   CHECK(B[2] == Approx(1.419078420).epsilon(4e-10));
   for (int i = 0; i <= 60; ++i) {
