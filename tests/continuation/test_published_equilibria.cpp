@@ -288,7 +288,7 @@ TEST_CASE("cusp normal form: two folds by closed form", "[published]") {
   CHECK(b.parameter(b.points() - 1) == 1.0);
 }
 
-TEST_CASE("Bratu: the fold of the discretised problem extrapolates to the exact one", "[published]") {
+TEST_CASE("Bratu: the fold of the discretised problem extrapolates to the exact one", "[published][slow]") {
   double fold[2], h[2];
   const int grids[2] = {200, 240};
   for (int g = 0; g < 2; ++g) {
@@ -565,7 +565,7 @@ TEST_CASE("a fold and another event as near as may be", "[published]") {
   }
 }
 
-TEST_CASE("closed curves end where they began, bounds are hit exactly", "[published]") {
+TEST_CASE("closed curves end where they began, bounds are hit exactly", "[published][slow]") {
   const Scalar circle{[](auto x, auto p) { return decltype(x)(1.0 - p * p - x * x); }};
   const auto f = flow(circle, 1);
   SECTION("an isola from any of its points") {

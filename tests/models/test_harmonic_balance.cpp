@@ -368,7 +368,7 @@ TEST_CASE("harmonic balance: from a settled motion") {
   CHECK(a(1, 2) == Approx(2.459).margin(5e-4));
 }
 
-TEST_CASE("harmonic balance: in-plane folds and whirling points of the Oresund stay by the walker") {
+TEST_CASE("harmonic balance: in-plane folds and whirling points of the Oresund stay by the walker", "[slow]") {
   const HarmonicBalance hb = stay_harmonic_balance(oresund(), {Lens("omega")}, {.harmonics = 40});
   Walker walker(hb, {.lower = 1.0, .upper = 2.3});
   const Branch branch = walker.walk(hb.linear_response(one(2.3)));
