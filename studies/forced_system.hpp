@@ -1,0 +1,33 @@
+#pragma once
+/// The forced modal system a study file describes, whatever the section it comes from, as every exact study kind takes it.
+///
+///     ForcedSystem s = forced_system_of(configuration, {"omega"});
+///     HarmonicBalance balance(s.system, {.harmonics = 15, .reflections = s.reflections});
+///
+/// Throws InputError (one line) for lenses that do not exist and values out of range.
+
+#include "models/harmonic_balance.hpp"
+#include "studies/configuration.hpp"
+#include "studies/result_file.hpp"
+
+namespace whirl::studies {
+
+struct ForcedSystem {
+  models::ParametricSystem system;
+  std::vector<models::CoordinateReflection> reflections;  ///< "WH" of a cable
+  std::vector<std::string> coordinates;                   ///< "q1", "q2", ...
+  std::string length_unit;                                ///< of the coordinates: "m", or "-" for a model without units
+  std::vector<std::string> lens_units;                    ///< of the parameters of `system`
+
+  models::ModalSystem<double> at(In p) const;  ///< with the parameters at p
+};
+
+/// [cable], [model], [damping], [support_motion], omega.
+void add_forced_system_keys(Schema& schema);
+ForcedSystem forced_system_of(const Configuration& c, const std::vector<std::string>& lenses);
+/// Warnings about the validity of the model; refusals as InputError.
+std::vector<std::string> check_forced_system(const Configuration& c);
+/// Derived numbers of the cable into /cable; nothing for a model without one.
+void write_forced_system(ResultFile& file, const Configuration& c);
+
+}  // namespace whirl::studies
