@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "continuation/augmented.hpp"
+#include "continuation/switching.hpp"
 #include "core/newton.hpp"
 
 namespace whirl::continuation {
@@ -234,6 +235,7 @@ bool EventFinder::solve(const Kind& kind, const Sample& near, SpecialPoint& out)
   out.residual = r.residual;
   out.subtype = kind.type == EventType::branch_point ? blocks.subtype[static_cast<std::size_t>(kind.block)] : "";
   if (auto* singular = dynamic_cast<SingularSystem*>(system.get())) out.null_vector = singular->null_vector(r.x);
+  if (kind.type == EventType::branch_point && kind.block == 0) (void)departures(f, out);  // tells pitchfork from transcritical
   if (kind.type == EventType::hopf) out.frequency = std::sqrt(static_cast<HopfSystem&>(*system).kappa(r.x));
   return true;
 }

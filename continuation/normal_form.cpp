@@ -64,7 +64,13 @@ Vector solve_off_null(const Matrix& a, const Vector& v, const Vector& w, const V
 
 }  // namespace
 
-void set_normal_form(const Problem& f, SpecialPoint& point) {
+std::string criticality(const SpecialPoint& point) {
+  const bool pitchfork = point.type == EventType::branch_point && point.subtype != "TC" && (point.block > 0 || point.subtype == "PF");
+  if (!point.has_coefficient || !(pitchfork || point.type == EventType::hopf) || point.coefficient == 0.0) return "";
+  return point.coefficient < 0.0 ? "supercritical" : "subcritical";
+}
+
+void set_normal_form(const Problem& f, SpecialPoint& point, const Vector& sense) {
   const int n = f.size();
   if (f.derivatives() < 3) return;
   Matrix j(n, n + f.parameters());
@@ -97,11 +103,18 @@ void set_normal_form(const Problem& f, SpecialPoint& point) {
   null_vectors(a, v, w);
   const double overlap = w.dot(v);
   if (std::abs(overlap) < 1e-10) return;  // a double zero: no coefficient
-  w /= overlap;
+  const auto along = [&](In direction) { return direction.size() >= n && v.dot(direction.head(n)) < 0.0; };
+  if (along(sense.size() > 0 ? sense : point.tangent)) {
+    v = -v;
+    w = -w;
+  }
+  w /= w.dot(v);
+  if (point.type == EventType::fold) point.null_vector = v;
   const Vector bvv = forms.B(v, v);
   const double quadratic = 0.5 * w.dot(bvv);
   // At a branch point the centre manifold bends with the parameter too; w'B(v, v) = 0 marks the pitchfork.
-  const bool pitchfork = point.type == EventType::branch_point && std::abs(quadratic) < 1e-7 * (1.0 + bvv.norm());
+  const bool told = !point.subtype.empty(), broken = point.block > 0 || point.subtype == "PF";
+  const bool pitchfork = point.type == EventType::branch_point && (told ? broken : std::abs(quadratic) < 1e-7 * (1.0 + bvv.norm()));
   point.coefficient = pitchfork ? w.dot(forms.C(v, v, v)) / 6.0 + 0.5 * w.dot(forms.B(v, solve_off_null(a, v, w, Vector(-bvv)))) : quadratic;
   point.has_coefficient = std::isfinite(point.coefficient);
 }

@@ -12,7 +12,12 @@
 namespace whirl::continuation {
 
 /// Sets point.coefficient (and null vectors of a Hopf point) where the problem offers third derivatives and the type has a coefficient.
-/// A branch point gets one only where its null vector makes it a pitchfork (w' B(v, v) = 0), else the transcritical (1/2) w' B(v, v).
-void set_normal_form(const Problem& f, SpecialPoint& point);
+/// A branch point is a pitchfork where it breaks a reflection or its subtype says "PF" (without either: where w' B(v, v) = 0), else it gets the
+/// transcritical (1/2) w' B(v, v).
+/// The sign of a quadratic coefficient goes with the sense of v: along `sense` if it is given, else along the branch's tangent at the point.
+void set_normal_form(const Problem& f, SpecialPoint& point, const Vector& sense = {});
+
+/// "supercritical" or "subcritical" for a pitchfork or a Hopf point with a coefficient, else "".
+std::string criticality(const SpecialPoint& point);
 
 }  // namespace whirl::continuation
