@@ -141,7 +141,9 @@ std::string BranchOutput::text(const std::vector<Branch>& branches) const {
       const auto& s = b.special[i];
       out += fmt::format("{:<7} {:<6} {:<10} {:>18.11f}", b.name, label(b, i), s.subtype, s.u[s.u.size() - 1]);
       for (const auto* c : shown) out += fmt::format(" {:>14.8f}", c->value(s.u));
-      out += fmt::format(" {:>9} {:>9.1e}\n", fmt::format("{} -> {}", s.unstable_before, s.unstable_after), s.residual);
+      const std::string how = criticality(s);
+      out +=
+          fmt::format(" {:>9} {:>9.1e}{}{}\n", fmt::format("{} -> {}", s.unstable_before, s.unstable_after), s.residual, how.empty() ? "" : " ", how);
     }
   for (const auto& b : branches)
     out += fmt::format("branch {:<7} {:>5} points{}, born at {}, ends: {}\n", b.name, b.points(), b.isola ? ", an isola" : "",
