@@ -123,8 +123,10 @@ bool Walker::begin(const Vector& u0, const Vector& direction, bool from_branch_p
       Spectrum eigen(s.curve.blocks());
       if (eigen.compute(j)) s.eigenvalues = eigen.eigenvalues();
       for (const auto& z : s.eigenvalues) unstable += z.real() > 1e-8 * (1.0 + std::abs(z)) ? 1 : 0;
-    } else if (problem_.multiplier_count() > 0 && problem_.multipliers(u0, s.eigenvalues)) {
-      for (const auto& mu : s.eigenvalues) unstable += std::abs(mu) > 1.0 + 1e-8 ? 1 : 0;
+    } else if (s.curve.orbit()) {
+      Eigen::VectorXi group(s.eigenvalues.size());
+      if (s.curve.orbit()->multipliers(u0, s.eigenvalues, group))
+        for (const auto& mu : s.eigenvalues) unstable += std::abs(mu) > 1.0 + 1e-8 ? 1 : 0;
     }
     s.branch.append(s.now.u, s.now.tangent, 0.0, s.now.residual, 0.0, 0, unstable, &s.eigenvalues);
     s.branch.start_reason = StopReason::known_branch_point;
@@ -137,9 +139,7 @@ bool Walker::begin(const Vector& u0, const Vector& direction, bool from_branch_p
       if (!s.curve.sample(u0, normal, s.now)) return false;
     }
     s.has_signature = true;
-    int unstable = 0;
-    for (int count : s.now.signature.unstable) unstable += count;
-    s.branch.append(s.now.u, s.now.tangent, 0.0, s.now.residual, 0.0, s.now.iterations, unstable, &s.curve.eigenvalues());
+    s.branch.append(s.now.u, s.now.tangent, 0.0, s.now.residual, 0.0, s.now.iterations, s.now.signature.total_unstable(), &s.curve.eigenvalues());
   }
   s.before = s.now;
   s.start_u = s.now.u;
@@ -192,7 +192,7 @@ bool Walker::correct() {
   s.factor = std::clamp(std::max({by_angle, by_contraction, by_distance}), 0.5, 2.0);
   if (angle > limit && !first_off_branch_point && s.step > 4.0 * options_.min_step) return false;
   s.step_taken = s.curve.length(s.next.u - s.now.u);
-  for (std::size_t k = 0; k < s.curve.blocks().indices.size(); ++k) s.next.lead[k] = s.curve.lead(static_cast<int>(k));
+  s.next.lead = s.curve.leads_now();
   s.eigenvalues = s.curve.eigenvalues();
   s.next.residual = s.report.residual;
   s.next.iterations = s.report.iterations;
@@ -294,8 +294,7 @@ void Walker::find_peaks_and_values() {
     p.bracket[0] = s.now.u[n];
     p.bracket[1] = s.next.u[n];
     p.arclength = s.arclength + s.curve.length(at.u - s.now.u);
-    for (int count : at.signature.unstable) p.unstable_after += count;
-    p.unstable_before = p.unstable_after;
+    p.unstable_before = p.unstable_after = at.signature.total_unstable();
     s.branch.special.push_back(std::move(p));
   };
   for (double value : options_.user_values) {
@@ -367,10 +366,9 @@ void Walker::accept() {
   State& s = *s_;
   const int n = problem_.size();
   if (s.accepted > 2 && close_loop()) return;
-  int unstable = 0;
-  for (int count : s.next.signature.unstable) unstable += count;
   s.arclength += s.step_taken;
-  s.branch.append(s.next.u, s.next.tangent, s.arclength, s.next.residual, s.step, s.next.iterations, unstable, &s.eigenvalues);
+  s.branch.append(s.next.u, s.next.tangent, s.arclength, s.next.residual, s.step, s.next.iterations, s.next.signature.total_unstable(),
+                  &s.eigenvalues);
   std::swap(s.before, s.now);
   std::swap(s.now, s.next);
   if (!s.has_signature) s.before = s.now;
@@ -409,9 +407,7 @@ bool Walker::close_loop() {
   if (!s.curve.sample(at.u + shift * s.start_tangent, s.start_tangent, at)) return false;
   if (s.curve.length(at.u - s.start_u) > 1e-7) return false;
   s.arclength += s.curve.length(s.start_u - s.now.u);
-  int unstable = 0;
-  for (int count : at.signature.unstable) unstable += count;
-  s.branch.append(s.start_u, s.start_tangent, s.arclength, at.residual, s.step, at.iterations, unstable, &s.curve.eigenvalues());
+  s.branch.append(s.start_u, s.start_tangent, s.arclength, at.residual, s.step, at.iterations, at.signature.total_unstable(), &s.curve.eigenvalues());
   // What lies behind the first point was found by the first step.
   std::erase_if(s.branch.special, [&s](const SpecialPoint& e) { return e.arclength > s.arclength; });
   s.stop = StopReason::closed_loop;

@@ -18,6 +18,7 @@ parameters = { sigma = 10.0, rho = 0.5, beta = 2.6666666666666667 }
 rhs = ["sigma*(y - x)", "x*(rho - z) - y", "x*y - beta*z"]
 initial = [0.0, 0.0, 0.0]         # near a rest point at the lower end of continuation.range
 mirrors = [["x", "y"]]            # optional: variables that change sign together without changing the equations
+amplitudes = { R = ["x", "y"] }   # optional: roots of sums of squares, as further columns
 mirror_subtype = "PF"             # name of branch points that break such a symmetry)toml",
           .required = required};
 }
@@ -32,12 +33,20 @@ EquilibriumModel equilibrium_model_of(const Configuration& c) {
   const std::string subtype = m.text("mirror_subtype", "PF");
   if (m.has("mirrors"))
     for (auto& names : m.text_rows("mirrors")) model.mirrors.push_back({std::move(names), subtype});
+  if (m.has("amplitudes"))
+    for (auto& [name, variables] : m.named_texts("amplitudes")) model.amplitudes.push_back({name, std::move(variables)});
   m.no_others();
   const std::size_t n = model.variables.size();
   if (n == 0) throw m.error("variables", "must be an array of at least 1 name");
   if (model.rhs.size() != n) throw m.error("rhs", fmt::format("must be an array of {} expressions, one for each variable", n));
   if (model.initial.size() != n) throw m.error("initial", fmt::format("must be an array of {} numbers, one for each variable", n));
   if (model.mirrors.size() > 3) throw m.error("mirrors", "must be at most 3");
+  try {
+    model.validate();
+  } catch (const std::invalid_argument& e) {
+    const std::string_view what = e.what();
+    throw m.error(what.find("amplitude") != what.npos ? "amplitudes" : what.find("reflection") != what.npos ? "mirrors" : "variables", e.what());
+  }
   try {
     const models::EquilibriumFlow tried(model, {});
     Vector r(static_cast<Eigen::Index>(n));

@@ -118,12 +118,21 @@ class ExpressionSource : public EquilibriumSource {
 
   std::vector<PointColumn> columns(const Problem&) const override {
     std::vector<PointColumn> all;
+    for (const auto& a : model_.amplitudes)
+      all.push_back({a.name, "-", "root of the sum of squares of " + fmt::format("{}", fmt::join(a.variables, ", ")),
+                     [of = indices(a)](In u) {
+                       double sum = 0.0;
+                       for (const int i : of) sum += u[i] * u[i];
+                       return std::sqrt(sum);
+                     },
+                     true});
     for (int i = 0; i < model_.size(); ++i)
       all.push_back({model_.variables[static_cast<std::size_t>(i)], "-", "variable", [i](In u) { return u[i]; }, true});
     return all;
   }
   std::vector<Observable> observables() const override {
     std::vector<Observable> all;
+    for (const auto& a : model_.amplitudes) all.push_back({.name = a.name, .form = QuadraticForm::square_sum(model_.size(), indices(a))});
     for (int i = 0; i < model_.size(); ++i)
       all.push_back({.name = model_.variables[static_cast<std::size_t>(i)], .form = QuadraticForm::coordinate(model_.size(), i)});
     return all;
@@ -161,6 +170,13 @@ class ExpressionSource : public EquilibriumSource {
   void write(ResultFile&) const override {}
 
  private:
+  Indices indices(const Amplitude& a) const {
+    Indices of;
+    for (const auto& name : a.variables)
+      of.push_back(static_cast<int>(std::find(model_.variables.begin(), model_.variables.end(), name) - model_.variables.begin()));
+    return of;
+  }
+
   Configuration c_;
   EquilibriumModel model_;
 };

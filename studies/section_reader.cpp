@@ -154,6 +154,21 @@ std::vector<std::pair<std::string, double>> SectionReader::named_numbers(const s
   return all;
 }
 
+std::vector<std::pair<std::string, std::vector<std::string>>> SectionReader::named_texts(const std::string& key) const {
+  (void)has(key);
+  const toml::node* node = node_->table.get(key);
+  const toml::table* table = node ? node->as_table() : nullptr;
+  const auto fail = [&] { return error(key, "must be a table of arrays of texts: { A = [\"x\", \"y\"] }"); };
+  if (!table) throw fail();
+  std::vector<std::pair<std::string, std::vector<std::string>>> all;
+  for (const auto& [name, value] : *table) {
+    auto items = items_of<std::string>(value, text_of);
+    if (!items) throw fail();
+    all.emplace_back(name.str(), std::move(*items));
+  }
+  return all;
+}
+
 std::vector<SectionReader> SectionReader::tables(const std::string& key) const {
   if (!has(key)) return {};
   const toml::array* array = node_->table.get(key)->as_array();
