@@ -4,6 +4,8 @@
 #include <Eigen/QR>
 #include <Eigen/SVD>
 
+#include "continuation/null_vectors.hpp"
+
 namespace whirl::continuation {
 namespace {
 
@@ -83,13 +85,12 @@ Vector SingularSystem::unknowns(In u) const {
 void SingularSystem::update_borders(In y) {
   spread(y);
   base_.jacobian(u_, j_);
-  const Eigen::JacobiSVD<Matrix> svd(block_of(j_, block_), Eigen::ComputeFullU | Eigen::ComputeFullV);
   const int m = static_cast<int>(block_.size());
-  // Singular vectors come with any sign; keep it along a curve, so that test functions do not jump.
-  const double b_sense = svd.matrixU().col(m - 1).dot(b_.head(m)) < 0.0 ? -1.0 : 1.0,
-               c_sense = svd.matrixV().col(m - 1).dot(c_.head(m)) < 0.0 ? -1.0 : 1.0;
-  b_.head(m) = b_sense * svd.matrixU().col(m - 1);
-  c_.head(m) = c_sense * svd.matrixV().col(m - 1);
+  Vector right, left;
+  null_vectors(block_of(j_, block_), right, left);
+  // They come with any sign; keep it along a curve, so that test functions do not jump.
+  b_.head(m) = left.dot(b_.head(m)) < 0.0 ? -left : left;
+  c_.head(m) = right.dot(c_.head(m)) < 0.0 ? -right : right;
   b_[m] = c_[m] = 0.0;
 }
 

@@ -8,6 +8,8 @@
 
 #include "continuation/augmented.hpp"
 #include "continuation/normal_form.hpp"
+#include "continuation/period_doubling.hpp"
+#include "continuation/torus.hpp"
 #include "core/newton.hpp"
 
 namespace whirl::continuation {
@@ -55,21 +57,24 @@ class Held : public Problem {
 std::unique_ptr<AugmentedSystem> make_system(const Problem& f, const SpecialPoint& point, const Blocks& blocks, const std::vector<Observable>& peaks,
                                              In u) {
   const Indices& state = blocks.indices[0];
-  const Indices& block = blocks.indices[static_cast<std::size_t>(point.block)];
+  const auto of_block = [&]() -> const Indices& { return blocks.indices[static_cast<std::size_t>(point.block)]; };
   switch (point.type) {
     case EventType::fold:
       return std::make_unique<SingularSystem>(f, state, state, u);
     case EventType::branch_point:
-      if (point.block > 0) return std::make_unique<SingularSystem>(f, state, block, u);
+      if (point.block > 0) return std::make_unique<SingularSystem>(f, state, of_block(), u);
       return std::make_unique<BranchPointSystem>(f, u);
     case EventType::hopf:
-      return std::make_unique<HopfSystem>(f, state, block, u);
+      return std::make_unique<HopfSystem>(f, state, of_block(), u);
     case EventType::peak:
       for (const auto& peak : peaks)
         if (peak.name == point.subtype && peak.form) return std::make_unique<PeakSystem>(f, state, *peak.form, u);
       throw std::invalid_argument(fmt::format("no form is known of the quantity '{}' that has its peak here", point.subtype));
-    case EventType::period_doubling:
     case EventType::torus:
+      if (const auto* orbit = dynamic_cast<const OrbitProblem*>(&f))
+        return std::make_unique<TorusSystem>(*orbit, state, unknowns_of_group(*orbit, u, point.block), u, point.frequency);
+      break;
+    case EventType::period_doubling:  // `follow` hands it on as a branch point of the doubled problem
     case EventType::end:
     case EventType::gave_up:
     case EventType::user_value:
@@ -125,6 +130,10 @@ SpecialPoint Follower::at(In y) const {
     if (!(kappa > 0.0)) return s;
   }
   // Along the curve the null vector turns, it does not jump: neither does the sign of a fold's coefficient.
+  if (const auto* torus = dynamic_cast<const TorusSystem*>(system_.get())) {
+    s.frequency = torus->kappa(y);
+    return s;
+  }
   set_normal_form(held_, s, sense_);
   if (!s.has_coefficient) s.coefficient = std::nan("");
   if (point_.type == EventType::fold && s.has_coefficient) sense_ = s.null_vector;
@@ -331,9 +340,29 @@ DefiningCurve Follower::run(double p2, const Observer& observer) {
 
 }  // namespace
 
+namespace {
+
+// A period doubling is a branch point of the doubled problem: its curve is followed there.
+DefiningCurve follow_doubling(const OrbitProblem& orbit, const SpecialPoint& point, double p2, const TwoParameterOptions& options,
+                              const Observer& observer) {
+  Vector u(point.u.size() + 1);
+  u << point.u, p2;
+  auto at = period_doubling_near(orbit, u, point.block);
+  if (!at) throw std::invalid_argument("the period doubling does not satisfy its system");
+  at->u.conservativeResize(at->u.size() - 1);
+  DefiningCurve curve = Follower(orbit.doubled(), *at, options).run(p2, observer);
+  curve.type = EventType::period_doubling;
+  curve.subtype = "";
+  return curve;
+}
+
+}  // namespace
+
 DefiningCurve follow(const Problem& problem2, const SpecialPoint& point, double p2, const TwoParameterOptions& options, const Observer& observer) {
   if (problem2.parameters() != 2) throw std::invalid_argument("following a special point needs a problem with two free parameters");
   if (problem2.derivatives() < 2) throw std::invalid_argument("following a special point needs second derivatives");
+  const auto* orbit = dynamic_cast<const OrbitProblem*>(&problem2);
+  if (orbit && point.type == EventType::period_doubling) return follow_doubling(*orbit, point, p2, options, observer);
   return Follower(problem2, point, options).run(p2, observer);
 }
 
