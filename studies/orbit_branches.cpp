@@ -15,16 +15,14 @@ using namespace models;
 
 namespace {
 
-constexpr int first_harmonics = 10;   // per excitation period of the motion
+constexpr int first_harmonics = 10;     // per excitation period of the motion
 constexpr int truncation_samples = 16;  // points of a branch at which the truncation is measured, beside the special points
 
 bool has(const HarmonicBalance& hb, const std::vector<int>& active, const std::string& subtype) {
   return std::any_of(active.begin(), active.end(), [&](int r) { return hb.reflections()[static_cast<std::size_t>(r)].subtype == subtype; });
 }
 
-bool keeps(const HarmonicBalance& hb, In u, const std::string& subtype) {
-  return has(hb, active_reflections(hb, u.head(hb.size()), 1e-9), subtype);
-}
+bool keeps(const HarmonicBalance& hb, In u, const std::string& subtype) { return has(hb, active_reflections(hb, u.head(hb.size()), 1e-9), subtype); }
 
 }  // namespace
 
@@ -44,17 +42,8 @@ const HarmonicBalance& OrbitBranches::balance_of(In u) const {
 
 std::vector<Branch> OrbitBranches::all() const {
   std::vector<Branch> branches;
-  for (int level = 0; level < levels(); ++level)
-    branches.insert(branches.end(), network(level).branches().begin(), network(level).branches().end());
+  for (int level = 0; level < levels(); ++level) branches.insert(branches.end(), network(level).branches().begin(), network(level).branches().end());
   return branches;
-}
-
-double OrbitBranches::truncation(const Branch& b, int level) const {
-  double worst = 0.0;
-  const int every = std::max(1, b.points() / truncation_samples);
-  for (int i = 0; i < b.points(); i += every) worst = std::max(worst, balance(level).truncation(b.u(i)).error);
-  for (const auto& s : b.special) worst = std::max(worst, balance(level).truncation(s.u).error);
-  return worst;
 }
 
 // Measures the truncation of a finished branch; too large: this pass ends, the next has the harmonics that the worst motion needs.
@@ -63,23 +52,21 @@ void OrbitBranches::judge(const Branch& b, int level) {
   const HarmonicBalance& hb = balance(level);
   double worst = 0.0;
   Vector at;
-  const int every = std::max(1, b.points() / truncation_samples);
-  const auto look = [&](In u) {
-    const double error = hb.truncation(u).error;
+  const auto look = [&](In u, const Vector& tangent) {
+    const double error = hb.truncation(u, tangent).error;
     if (error <= worst) return;
     worst = error;
     at = u;
   };
-  for (int i = 0; i < b.points(); i += every) look(b.u(i));
-  for (const auto& s : b.special) look(s.u);
-  const bool enough = worst <= options_.truncation_tolerance || options_.harmonics > 0 || harmonics_ >= options_.max_harmonics;
-  if (enough) {
-    if (on_branch_) on_branch_(b, level);
+  const int every = std::max(1, b.points() / truncation_samples);
+  for (int i = 0; i < b.points(); i += every) look(b.u(i), b.tangent(i));
+  for (const auto& s : b.special) look(s.u, s.tangent);
+  if (worst <= options_.truncation_tolerance || options_.harmonics > 0 || harmonics_ >= options_.max_harmonics) {
+    if (on_branch_) on_branch_(b, level, worst);
     return;
   }
-  const OrbitOptions o{.tolerance = 0.3 * options_.truncation_tolerance, .max_harmonics = options_.max_harmonics << level};
-  const Orbit orbit = solve_orbit(hb, at, o);
-  needed_ = std::clamp((orbit.problem->harmonics() >> level) + 1, harmonics_ + options_.nu, options_.max_harmonics);
+  const int enough = hb.harmonics_for(at, 0.1 * options_.truncation_tolerance / worst) >> level;
+  needed_ = std::clamp(enough, harmonics_ + options_.nu, std::min(2 * harmonics_, options_.max_harmonics));
 }
 
 void OrbitBranches::seed_linear() {
@@ -117,15 +104,17 @@ void OrbitBranches::seed_integrated() {
     int level = 0;
     while (level < levels() && period(level) % s.motion.multiple != 0) ++level;
     if (level == levels()) {
-      const std::string text = fmt::format("a motion over {} excitation periods was met at {:.6g}: periodic.nu = {} or more period_doublings follow it",
-                                           s.motion.multiple, s.p, s.motion.multiple);
+      const std::string text =
+          fmt::format("a motion over {} excitation periods was met at {:.6g}: periodic.nu = {} or more period_doublings follow it", s.motion.multiple,
+                      s.p, s.motion.multiple);
       if (std::find(context_.warnings.begin(), context_.warnings.end(), text) == context_.warnings.end()) context_.warn(text);
       continue;
     }
     const HarmonicBalance& hb = balance(level);
     const NewtonResult at = newton(hb, hb.from_motion(s.motion, Vector::Constant(1, s.p)));
     // Newton may fall back on a motion of half the period: that one belongs to the level below.
-    if (at.ok() && (level == 0 || !keeps(hb, at.x, period_doubling_subtype))) net_->add_seed(at.x, fmt::format("integrated motion at {:.6g}", s.p), level);
+    if (at.ok() && (level == 0 || !keeps(hb, at.x, period_doubling_subtype)))
+      net_->add_seed(at.x, fmt::format("integrated motion at {:.6g}", s.p), level);
   }
 }
 
