@@ -177,6 +177,18 @@ Vector state_of(const Ansatz& ansatz, const SteadyMotion& motion) {
   return x;
 }
 
+Vector balance_state(const Ansatz& ansatz, In x, int H) {
+  const int width = 2 * H + 1;
+  Vector out = Vector::Zero(ansatz.coordinates() * width);
+  for (int i = 0; i < ansatz.coordinates(); ++i)
+    for (const int k : ansatz.harmonics[at(i)]) {
+      const std::complex<double> z = amplitude(ansatz, x, i, k);
+      out[i * width + (k > 0 ? 2 * k - 1 : 0)] = z.real();
+      if (k > 0) out[i * width + 2 * k] = -z.imag();
+    }
+  return out;
+}
+
 // ---- symmetries ------------------------------------------------------------------------------------------------------------
 
 std::vector<Reflection> reflections_of(const Ansatz& ansatz, const ModalSystem<double>& system, const std::vector<CoordinateReflection>& given) {

@@ -49,6 +49,9 @@ Vector motion_at(const Ansatz& ansatz, In x, double omega, double t);
 Vector linear_state(const Ansatz& ansatz, const ModalSystem<double>& system);
 Vector state_of(const Ansatz& ansatz, const SteadyMotion& motion);
 
+/// The kept harmonics in the layout of HarmonicBalance and Floquet with harmonics 0..H of omega/nu, H >= highest().
+Vector balance_state(const Ansatz& ansatz, In x, int H);
+
 /// Mirror symmetries of any flow of this system on the ansatz: the coordinate reflections given (each checked), and the shift by half a base
 /// period, by itself ("PD") or with signs ("SB"). Those that leave every kept harmonic in place, or repeat another, are left out.
 std::vector<Reflection> reflections_of(const Ansatz& ansatz, const ModalSystem<double>& system, const std::vector<CoordinateReflection>& given);

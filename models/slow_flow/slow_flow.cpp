@@ -55,6 +55,7 @@ SlowFlowModel::SlowFlowModel(const ParametricSystem& system, const Ansatz& ansat
       throw std::invalid_argument(fmt::format("more than {} forced harmonics of one coordinate cannot be frozen", max_frozen));
     highest = std::max(highest, k);
   }
+  highest_ = highest;
   samples_ = (degree + 1) * highest + shape.max_harmonic * ansatz_.nu + 1;
   samples_ += samples_ % 2;
   cosine_ = cosines(shape.max_harmonic, ansatz_.nu, samples_);
@@ -273,6 +274,21 @@ Vector SlowFlow::motion(In u, double t) const {
     }
   }
   return y;
+}
+
+Vector SlowFlow::balance_state(In u) const {
+  const int H = balance_harmonics();
+  Vector x = models::balance_state(ansatz(), u.head(size()), H);
+  const ModalSystem<double> system = system_at(u);
+  for (int i = 0; i < system.size(); ++i) {
+    const auto z = model().frozen(system, i);
+    for (std::size_t f = 0; f < z.size(); ++f) {
+      const int place = i * (2 * H + 1) + 2 * model().frozen_of(i)[f];
+      x[place - 1] = z[f].real();
+      x[place] = -z[f].imag();
+    }
+  }
+  return x;
 }
 
 Vector SlowFlow::linear_response(In p) const {

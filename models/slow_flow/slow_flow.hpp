@@ -55,6 +55,7 @@ class SlowFlowModel {
   void linearise(const double* u, double* r, MatrixOut j) const;
   /// Frozen amplitudes at p, in the order of `frozen_of`.
   std::vector<std::complex<double>> frozen(const ModalSystem<double>& system, int coordinate) const;
+  int highest() const { return highest_; }  ///< harmonic of omega/nu in the motion, kept or frozen
   const std::vector<int>& frozen_of(int coordinate) const { return frozen_[static_cast<std::size_t>(coordinate)]; }
 
  private:
@@ -83,7 +84,7 @@ class SlowFlowModel {
 
   ParametricSystem system_;
   Ansatz ansatz_;
-  int n_, size_, parameters_, samples_;
+  int n_, size_, parameters_, samples_, highest_;
   Matrix cosine_;                         // cos(h omega t) at the samples, one column an h
   std::vector<ListTransform> transform_;  // per coordinate
   std::vector<std::vector<int>> frozen_;  // harmonics of omega per coordinate
@@ -104,6 +105,9 @@ class SlowFlow : public DualProblem<SlowFlowModel> {
   ModalSystem<double> system_at(In u) const;
   /// (q, q') at time t, cos(omega t) = 1 at t = 0, the frozen part included.
   Vector motion(In u, double t) const;
+  /// The motion in the layout of HarmonicBalance, the frozen part included; H of it.
+  Vector balance_state(In u) const;
+  int balance_harmonics() const { return model().highest(); }
   /// Start values (x, p): the response without the terms, and a settled motion.
   Vector linear_response(In p) const;
   Vector from_motion(const SteadyMotion& motion, In p) const;

@@ -52,26 +52,13 @@ const Branch& named(const Network& net, const std::string& born_at) {
   return net.branches().front();
 }
 
-// The motion in the layout of the harmonic balance.
-Vector balance_state(const Ansatz& a, In x) {
-  const int H = a.highest(), width = 2 * H + 1;
-  Vector out = Vector::Zero(a.coordinates() * width);
-  for (int i = 0; i < a.coordinates(); ++i)
-    for (int k = 0; k <= H; ++k) {
-      const auto z = amplitude(a, x, i, k);
-      out[i * width + (k > 0 ? 2 * k - 1 : 0)] = z.real();
-      if (k > 0) out[i * width + 2 * k] = -z.imag();
-    }
-  return out;
-}
-
 // Points of a branch at which the slow flow and the Floquet multipliers of the same motion count as many unstable directions.
 int agreeing(const SlowFlow& flow, const Branch& b) {
   const Ansatz& a = flow.ansatz();
   Floquet floquet(flow.system_at(b.u(0)), a.highest(), a.nu);
   int same = 0;
   for (int i = 0; i < b.points(); ++i) {
-    const auto& result = floquet.compute(flow.system_at(b.u(i)), balance_state(a, b.u(i).head(flow.size())));
+    const auto& result = floquet.compute(flow.system_at(b.u(i)), flow.balance_state(b.u(i)));
     int unstable = 0;
     for (const auto& mu : result.multipliers) unstable += std::abs(mu) > 1.0 + 1e-9 ? 1 : 0;
     same += unstable == b.n_unstable(i) ? 1 : 0;
