@@ -278,9 +278,24 @@ std::vector<std::vector<SteadyMotion>> settled_motions(const Configuration& c, c
   return motions;
 }
 
+// A solution symmetric but for rounding is made so to the last bit: the walker tells symmetric branches by exact zeros.
+Vector snapped(const Problem& f, Vector u) {
+  const double limit = 1e-9 * u.head(f.size()).lpNorm<Eigen::Infinity>();
+  for (const auto& reflection : f.reflections()) {
+    const auto odd = reflection.signs.array() < 0.0;
+    if ((odd.cast<double>() * u.head(f.size()).array()).abs().maxCoeff() <= limit) u.head(f.size()).array() *= (!odd).cast<double>();
+  }
+  return u;
+}
+
+void add(const Setup& s, Network& net, const Vector& solution, const std::string& origin) {
+  const NewtonResult r = newton(*s.averaged.flow, snapped(*s.averaged.flow, solution), patient);
+  if (r.ok() && net.add_seed(r.x, origin)) net.switch_branches();
+}
+
 void try_seed(const Setup& s, Network& net, const Vector& start, const std::string& origin) {
   const NewtonResult r = newton(*s.averaged.flow, start, patient);
-  if (r.ok() && net.add_seed(r.x, origin)) net.switch_branches();
+  if (r.ok()) add(s, net, r.x, origin);
 }
 
 void explore(const Configuration& c, const Setup& s, Network& net, RunContext& context) {
@@ -317,28 +332,28 @@ void explore(const Configuration& c, const Setup& s, Network& net, RunContext& c
     for (const auto& [branch, u] : net.solutions_at(p)) known.push_back(u);
     const std::size_t count = known.size();
     const auto all = continuation::deflated_solutions(flow, std::move(known), starts);
-    for (std::size_t i = count; i < all.size(); ++i)
-      if (net.add_seed(all[i], fmt::format("deflation at {} = {:.6g}", s.parameter, p))) net.switch_branches();
+    for (std::size_t i = count; i < all.size(); ++i) add(s, net, all[i], fmt::format("deflation at {} = {:.6g}", s.parameter, p));
   }
   for (const int m : longer)
     context.warn(fmt::format("a motion of period {}T was met that the ansatz cannot hold: it needs nu = {} or a multiple", m, m));
   if (net.branches().empty()) context.warn("no steady state was found in the range");
 }
 
-// Copies of one Floquet exponent stand omega/nu apart: an averaged Hopf frequency beyond half of that is none of the motion's own.
+// Copies of one Floquet exponent stand omega/nu apart, so none needs a frequency above omega/(2 nu); averaging of first order holds for exponents
+// well below that.
 std::vector<Branch> with_fast_marked(const Setup& s, const std::vector<Branch>& branches, RunContext& context) {
   std::vector<Branch> marked = branches;
   int count = 0;
   for (auto& b : marked)
     for (auto& special : b.special) {
       const double omega = s.forced.at(special.u.tail(1)).omega;
-      if (special.type != continuation::EventType::hopf || special.frequency <= 0.5 * omega / s.averaged.ansatz.nu) continue;
+      if (special.type != continuation::EventType::hopf || special.frequency <= 0.25 * omega / s.averaged.ansatz.nu) continue;
       special.subtype = "fast";
       ++count;
     }
   if (count > 0)
     context.warn(
-        fmt::format("{} Hopf points marked \"fast\" have a frequency above omega/(2 nu): first-order averaging does not hold for them, trust "
+        fmt::format("{} Hopf points marked \"fast\" have a frequency above omega/(4 nu): first-order averaging does not hold for them, trust "
                     "floquet_modulus there",
                     count));
   return marked;

@@ -240,8 +240,8 @@ std::string integrated_text(const AveragedEquations& averaged, const std::vector
     const std::string kind = r.motion.multiple > 1 ? fmt::format("periodic {}T", r.motion.multiple) : to_string(r.motion.kind);
     out += fmt::format("{:>8.4f} {:<20} {:<14}", r.omega, r.start_name, kind);
     for (const auto& [i, k] : shown) {
-      const double avg = r.averaged ? std::abs(amplitude(a, r.averaged->u.head(a.size()), i, k)) : std::nan("");
-      out += fmt::format(" {:>8.4f} {:>8.4f}", amplitude_of(a, r.motion, i, k), avg);
+      const std::string avg = r.averaged ? fmt::format("{:.4f}", std::abs(amplitude(a, r.averaged->u.head(a.size()), i, k))) : "-";
+      out += fmt::format(" {:>8.4f} {:>8}", amplitude_of(a, r.motion, i, k), avg);
     }
     out += fmt::format("  {}\n", r.averaged ? r.averaged->branch : "-");
   }
