@@ -77,8 +77,9 @@ void add_seed_keys(Schema& s) {
   whole("seeds.grid", "parameter values at which further solutions are looked for; 0: only what the linear response leads to", 5, 0, 10000);
   s.add({.name = "seeds.starts",
          .unit = "m",
-         .description = "displacements at rest from which the equations of motion are integrated there, one number a coordinate, start after start",
-         .default_value = std::vector<double>{0.0, 0.0, 3.0, 0.0, 10.0, 10.0}});
+         .description = "displacements at rest from which the equations of motion are integrated there, one number a coordinate, start after start; "
+                        "by default rest, 3 in the first coordinate, 10 in all",
+         .default_value = std::vector<double>{}});
   whole("seeds.max_periods", "excitation periods of each of these integrations; 0: none", 1000, 0, 10000000);
   whole("seeds.random", "random states from which deflated Newton starts there", 6, 0, 10000);
   s.add({.name = "seeds.size", .unit = "m", .description = "largest entry of a random state", .default_value = 3.0, .lower = 0.0});
@@ -154,17 +155,36 @@ AveragedEquations averaged_of(const Configuration& c, const ForcedSystem& forced
   return a;
 }
 
+// Displacements at rest, n numbers each. Where none are given: rest, 3 in the first coordinate, 10 in all.
 std::vector<std::vector<double>> starts_of(const Configuration& c, const std::string& key, std::size_t n) {
+  std::vector<std::vector<double>> starts;
+  if (!c.is_given(key)) {
+    starts.assign(3, std::vector<double>(n, 0.0));
+    starts[1][0] = 3.0;
+    starts[2].assign(n, 10.0);
+    return starts;
+  }
   const auto& all = c.numbers(key);
   if (all.size() % n != 0) throw c.error(key, fmt::format("must hold {} numbers for each start", n));
-  std::vector<std::vector<double>> starts;
   for (std::size_t i = 0; i < all.size(); i += n)
     starts.emplace_back(all.begin() + static_cast<std::ptrdiff_t>(i), all.begin() + static_cast<std::ptrdiff_t>(i + n));
   return starts;
 }
 
+SettleOptions settle_options(const Configuration& c) {
+  SettleOptions o;
+  o.tolerance = c.number("verification.tolerance");
+  o.max_periods = static_cast<int>(c.integer("verification.max_periods"));
+  o.integrator.relative_tolerance = c.number("verification.relative_tolerance");
+  o.integrator.absolute_tolerance = c.number("verification.absolute_tolerance");
+  return o;
+}
+
 void check_range(const Configuration& c, const Setup& s) {
-  if (s.parameter != "omega") return check_lens_range(c, s.parameter, s.network.walk);
+  if (s.parameter != "omega") {
+    if (c.is_given("cable.chord_length")) check_lens_range(c, s.parameter, s.network.walk);
+    return;
+  }
   if (!(s.network.walk.lower > 0.0)) throw c.error("continuation.range", "must lie in (0, inf) [rad/s], the range of omega");
   if (c.is_given("omega")) throw c.error("omega", "is the continuation parameter: remove it, or choose another continuation.parameter");
 }
@@ -179,7 +199,6 @@ std::unique_ptr<Setup> setup(const Configuration& c) {
   const std::size_t n = s->forced.coordinates.size();
   (void)starts_of(c, "seeds.starts", n);
   (void)starts_of(c, "verification.starts", n);
-  (void)settle_of(c);  // complains of its keys
   return s;
 }
 
@@ -264,7 +283,7 @@ std::vector<std::vector<SteadyMotion>> settled_motions(const Configuration& c, c
   parallel_for(jobs, [&](std::size_t job) {
     if (interrupted) return;
     const std::size_t g = job / starts.size(), k = job % starts.size();
-    auto options = settle_of(c);
+    auto options = settle_options(c);
     options.max_periods = static_cast<int>(periods);
     options.lyapunov_periods = 0;
     options.interrupted = &interrupted;
@@ -367,7 +386,7 @@ void run_verification(const Configuration& c, const Setup& s, const Network& net
   IntegrationOptions o;
   o.perturbation = c.number("verification.perturbation");
   o.starts = starts_of(c, "verification.starts", s.forced.coordinates.size());
-  o.settle = settle_of(c);
+  o.settle = settle_options(c);
   o.transient_periods = static_cast<int>(c.integer("verification.transient_periods"));
   std::vector<std::vector<AveragedSolution>> solutions;
   for (const double omega : omegas) {
