@@ -3,20 +3,10 @@
 
 #include <optional>
 
-#include "models/slow_flow/ansatz.hpp"
-#include "studies/forced_system.hpp"
 #include "studies/run_context.hpp"
+#include "studies/slow_flow_ansatz.hpp"
 
 namespace whirl::studies {
-
-/// Averaged equations of one ansatz, whichever class they come from.
-struct AveragedEquations {
-  std::unique_ptr<Problem> flow;
-  models::Ansatz ansatz;
-  std::function<Vector(In u, double t)> motion;  ///< (q, q') at time t
-  std::function<Vector(In u)> balance_state;     ///< in the layout of Floquet
-  int balance_harmonics = 0;
-};
 
 /// An averaged solution at one frequency.
 struct AveragedSolution {
