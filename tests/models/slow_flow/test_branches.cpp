@@ -23,6 +23,11 @@ ParametricSystem stay_over_omega() { return stay_system(oresund(), {Lens("omega"
 
 Vector one(double x) { return Vector::Constant(1, x); }
 
+ModalSystem<double> oresund_system(double omega) {
+  const auto stay = oresund(0.5, omega);
+  return nielsen_kirkegaard(stay, stay_model(stay.cable, Coefficients::exact), Terms::reduced);
+}
+
 Branch walk(const SlowFlow& flow, double lower, double upper, double from) {
   const NewtonResult start = newton(flow, flow.linear_response(one(from)), {.max_iterations = 50});
   REQUIRE(start.ok());
@@ -189,9 +194,7 @@ TEST_CASE("slow flow: combinatorial response (3,2), exact projection on (60) and
     double integrated[5];
   };
   for (const Row& row : {Row{2.1, {0.8529, 1.8874, 0.2976, 1.0247, 0.4621}}, {2.15, {0.9797, 2.3753, 0.2866, 1.0270, 0.3974}}}) {
-    const auto stay = oresund(0.5, row.omega);
-    const auto system = nielsen_kirkegaard(stay, stay_model(stay.cable, Coefficients::exact), Terms::reduced);
-    const SteadyMotion m = settle(system, Eigen::Vector4d(3.0, 0.0, 0.0, 0.0));
+    const SteadyMotion m = settle(oresund_system(row.omega), Eigen::Vector4d(3.0, 0.0, 0.0, 0.0));
     REQUIRE(m.kind == MotionKind::periodic);
     REQUIRE(m.multiple == 2);
     const Vector exact = state_of(flow.ansatz(), m);
@@ -208,6 +211,37 @@ TEST_CASE("slow flow: combinatorial response (3,2), exact projection on (60) and
     }
     CHECK(stable_found);
   }
+}
+
+TEST_CASE("slow flow: 5/2 in q1 and 3 in q2 bring the births of the coupled response to the exact ones") {
+  const std::vector<double> exact = {1.99835488392, 2.09239906453};  // period doublings out of plane, AUTO-07p and Newton on the Poincare map
+  const auto error = [&](const std::vector<std::vector<double>>& lists) {
+    const Branch b = walk(SlowFlow(stay_over_omega(), Ansatz::list(lists), whirling), 1.9, 2.3, 2.0);
+    return worst(parameters_of(b, EventType::branch_point, "WH"), exact);
+  };
+  CHECK(error({{0.5, 1.5}, {0, 1, 2}}) == Approx(0.0860).margin(1e-4));            // the paper's list
+  CHECK(error({{0.5, 1.5, 2.5}, {0, 1, 2, 3}}) == Approx(1.346e-3).margin(1e-6));  // as measured
+  CHECK(error({{0.5, 1.5, 2.5, 3.5}, {0, 1, 2, 3, 4}}) == Approx(2.28e-5).margin(1e-7));
+  // With the printed terms only, the print's misprint of (64) corrected.
+  const PrintedCombinatorialFlow printed(stay_over_omega(), CombinatorialMotion::coupled);
+  Vector start(10);
+  start << linear_state(printed.ansatz(), oresund_system(1.9)), 1.9;
+  const NewtonResult at = newton(printed, start, {.max_iterations = 50});
+  REQUIRE(at.ok());
+  const Branch b = Walker(printed, {.lower = 1.9, .upper = 2.3}).walk(at.x);
+  // Births in closed form: (61) and (62) with small A1, A2 leave |d1 - beta1^2 / d3| = beta1, d_k = w1^2 - k^2 w^2 + i k w c + g2 (4 B0^2 + 2 B1^2 +
+  // 2 B2^2).
+  int births = 0;
+  for (const auto& s : b.special) {
+    if (s.type != EventType::branch_point) continue;
+    ++births;
+    const auto system = oresund_system(s.u[9]);
+    const double beta = 0.5 * system.terms[0].coefficient, g2 = 0.25 * system.terms[3].coefficient, w = system.omega;
+    const double across = g2 * (4.0 * s.u[4] * s.u[4] + 2.0 * s.u.segment(5, 4).squaredNorm());
+    const auto d = [&](double k) { return std::complex<double>(system.stiffness[0] - k * k * w * w + across, k * w * system.damping[0]); };
+    CHECK(std::abs(d(0.5) - beta * beta / d(1.5)) == Approx(beta).epsilon(1e-9));  // events are located to 1e-10
+  }
+  CHECK(births == 2);
 }
 
 TEST_CASE("slow flow: published first-order averages of the 1:2 pair", "[published]") {
