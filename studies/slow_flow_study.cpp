@@ -69,16 +69,16 @@ Schema schema() {
 
 // ---- set-up ----------------------------------------------------------------------------------------------------------------
 
-// Displacements at rest, n numbers each. Where none are given: rest, 3 in the first coordinate, 10 in all.
+// Displacements at rest, n numbers each. The default for any n: rest, 3 in the first coordinate, 10 in all.
 std::vector<std::vector<double>> starts_of(const Configuration& c, const std::string& key, std::size_t n) {
   std::vector<std::vector<double>> starts;
-  if (!c.is_given(key)) {
+  const auto& all = c.numbers(key);
+  if (all == std::get<std::vector<double>>(c.schema().find(key)->default_value)) {
     starts.assign(3, std::vector<double>(n, 0.0));
     starts[1][0] = 3.0;
     starts[2].assign(n, 10.0);
     return starts;
   }
-  const auto& all = c.numbers(key);
   if (all.size() % n != 0) throw c.error(key, fmt::format("must hold {} numbers for each start", n));
   for (std::size_t i = 0; i < all.size(); i += n)
     starts.emplace_back(all.begin() + static_cast<std::ptrdiff_t>(i), all.begin() + static_cast<std::ptrdiff_t>(i + n));
