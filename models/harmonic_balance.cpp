@@ -56,10 +56,10 @@ class StayMaker {
   }
 
   template <class S>
-  ModalSystem<S> operator()(std::span<const S> p) const {
+  void operator()(std::span<const S> p, ModalSystem<S>& out) const {
     StayParameters<S> record = promote<S>(stay_);
     for (std::size_t i = 0; i < lenses_.size(); ++i) lenses_[i].set(record, p[i]);
-    return nielsen_kirkegaard(record, cable_moves_ ? stay_model(record.cable, coefficients_) : constant_model<S>(), terms_);
+    nielsen_kirkegaard(record, cable_moves_ ? stay_model(record.cable, coefficients_) : constant_model<S>(), terms_, out);
   }
 
  private:

@@ -4,13 +4,20 @@
 
 #include "studies/continuation_study.hpp"
 #include "studies/periodic_study.hpp"
+#include "studies/slow_flow_study.hpp"
 #include "studies/superharmonic_study.hpp"
 #include "studies/two_parameter_study.hpp"
 
 namespace whirl::studies {
 
 const std::vector<StudyKind>& study_kinds() {
-  static const std::vector<StudyKind> kinds = {superharmonic_study(), continuation_study(), two_parameter_study(), periodic_study()};
+  static const std::vector<StudyKind> kinds = {
+      superharmonic_study(),
+      continuation_study(),
+      two_parameter_study(),
+      periodic_study(),
+      slow_flow_study(),
+  };
   return kinds;
 }
 
