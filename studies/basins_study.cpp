@@ -214,7 +214,7 @@ ExitStatus run(const Configuration& c, RunContext& context) {
   std::vector<AttractorRow> rows;
   for (std::size_t i = 0; i < map.attractors.size(); ++i) {
     const Attractor& a = map.attractors[i];
-    rows.push_back({s.omega, &a, finder.motion(a, 64, 128), fmt::format("A{}", i + 1), a.mirror_of >= 0 ? fmt::format("A{}", a.mirror_of + 1) : ""});
+    rows.push_back({s.omega, &a, finder.motion(a, 128, 128), fmt::format("A{}", i + 1), a.mirror_of >= 0 ? fmt::format("A{}", a.mirror_of + 1) : ""});
   }
   write_map(file, map, s);
   if (!rows.empty()) write_attractors(file, rows, map, s);

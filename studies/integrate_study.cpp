@@ -39,8 +39,8 @@ Schema schema() {
     s.add(
         {.name = name, .description = description, .default_value = value, .lower = lower, .upper = 1e6, .closed_lower = true, .closed_upper = true});
   };
-  count("integrate.transient_periods", "excitation periods of the recorded beginning of each motion; 0: none", 60, 0);
-  count("integrate.samples", "per excitation period of recorded motions; a power of two serves the spectra best", 64, 8);
+  count("integrate.transient_periods", "excitation periods of the recorded beginning of each motion; 0: none", 40, 0);
+  count("integrate.samples", "per excitation period of recorded motions; a power of two serves the spectra best", 128, 8);
   count("integrate.record_periods", "excitation periods recorded where a motion has no period", 128, 8);
   s.add({.name = "integrate.section_phase_deg",
          .description = "phase of the excitation at which the stroboscopic points are taken",

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <map>
 #include <numbers>
 
 #include "core/fourier.hpp"
@@ -14,6 +15,30 @@ using namespace models;
 namespace {
 
 constexpr int harmonics_written = 5;
+
+// 0 .. 5 in steps of omega, and of omega/m where a motion of period mT is among the rows.
+std::vector<std::pair<double, std::string>> harmonics_of(const std::vector<AttractorRow>& rows) {
+  std::map<double, std::string> all;
+  for (int h = 0; h <= harmonics_written; ++h) all[h] = fmt::format("{}", h);
+  for (const auto& r : rows)
+    for (int k = 1; r.attractor->multiple > 1 && k < harmonics_written * r.attractor->multiple; ++k)
+      if (k % r.attractor->multiple != 0)
+        all[static_cast<double>(k) / r.attractor->multiple] = fmt::format("{:.4g}", static_cast<double>(k) / r.attractor->multiple);
+  return {all.begin(), all.end()};
+}
+
+// "1.5: 2.375, 0.5: 0.980": the strongest lines of a coordinate, at most three.
+std::string strongest(const AttractorRow& r, int coordinate) {
+  std::vector<std::pair<double, double>> lines;
+  const int parts = std::max(1, r.attractor->multiple);
+  for (int k = 0; k <= harmonics_written * parts; ++k)
+    lines.emplace_back(std::abs(r.motion.harmonic(coordinate, static_cast<double>(k) / parts)), static_cast<double>(k) / parts);
+  std::sort(lines.rbegin(), lines.rend());
+  std::string out;
+  for (std::size_t k = 0; k < 3 && lines[k].first > 1e-4; ++k)
+    out += fmt::format("{}{:.4g}: {:.4f}", k == 0 ? "" : ", ", lines[k].second, lines[k].first);
+  return out.empty() ? "at rest" : out;
+}
 constexpr double two_pi = 2.0 * std::numbers::pi;
 
 Column column_of(const std::vector<AttractorRow>& rows, const std::string& name, const std::string& unit, const std::string& description,
@@ -136,9 +161,9 @@ std::vector<Column> attractor_columns(const std::vector<AttractorRow>& rows, con
     const std::string& q = s.coordinates[i];
     table.push_back(column_of(rows, q + "_max", s.length_unit, "largest " + q, [k](const auto& r) { return r.motion.record.row(k).maxCoeff(); }));
     table.push_back(column_of(rows, q + "_min", s.length_unit, "least " + q, [k](const auto& r) { return r.motion.record.row(k).minCoeff(); }));
-    for (int h = 0; h <= harmonics_written; ++h)
-      table.push_back(column_of(rows, fmt::format("{}_h{}", q, h), s.length_unit, fmt::format("amplitude of {} omega in {}", h, q),
-                                [i, h](const auto& r) { return std::abs(r.motion.harmonic(static_cast<int>(i), h)); }));
+    for (const auto& [h, name] : harmonics_of(rows))
+      table.push_back(column_of(rows, fmt::format("{}_h{}", q, name), s.length_unit, fmt::format("amplitude of {} omega in {}", name, q),
+                                [i, h = h](const auto& r) { return std::abs(r.motion.harmonic(static_cast<int>(i), h)); }));
   }
   return table;
 }
@@ -161,20 +186,19 @@ std::vector<TextColumn> attractor_texts(const std::vector<AttractorRow>& rows) {
 
 std::string attractor_text(const std::vector<AttractorRow>& rows, const ForcedSystem& s, const std::vector<std::string>& extra_heads,
                            const std::vector<std::vector<std::string>>& extra) {
-  std::string out = fmt::format("{:<5} {:>9} {:<16} {:>9} {:>8} {:>8}", "name", "omega", "motion", "lyapunov", "+-", "|mu|");
-  for (const auto& q : s.coordinates)
-    for (int h = 0; h <= 3; ++h) out += fmt::format(" {:>8}", fmt::format("{}_h{}", q, h));
+  std::string out = fmt::format("{:<5} {:>9} {:<16} {:>9} {:>8} {:>8} {:<7}", "name", "omega", "motion", "lyapunov", "+-", "|mu|", "mirror");
   for (const auto& h : extra_heads) out += fmt::format(" {:>9}", h);
-  out += "  mirror\n";
+  for (const auto& q : s.coordinates) out += fmt::format("  {:<40}", fmt::format("{}, multiple of omega: amplitude", q));
+  out += '\n';
   for (std::size_t i = 0; i < rows.size(); ++i) {
     const auto& r = rows[i];
-    out += fmt::format("{:<5} {:>9.5f} {:<16} {:>9.5f} {:>8.1e} {:>8.5f}", r.name, r.omega, name_of(r.attractor->kind, r.attractor->multiple),
-                       r.attractor->lyapunov, r.attractor->lyapunov_error, largest_multiplier(r));
-    for (std::size_t q = 0; q < s.coordinates.size(); ++q)
-      for (int h = 0; h <= 3; ++h) out += fmt::format(" {:>8.4f}", std::abs(r.motion.harmonic(static_cast<int>(q), h)));
+    const std::string mu = r.attractor->multipliers.size() > 0 ? fmt::format("{:.5f}", largest_multiplier(r)) : std::string("-");
+    out += fmt::format("{:<5} {:>9.5f} {:<16} {:>9.5f} {:>8.1e} {:>8} {:<7}", r.name, r.omega, name_of(r.attractor->kind, r.attractor->multiple),
+                       r.attractor->lyapunov, r.attractor->lyapunov_error, mu, r.mirror.empty() ? "-" : r.mirror.c_str());
     if (i < extra.size())
       for (const auto& e : extra[i]) out += fmt::format(" {:>9}", e);
-    out += fmt::format("  {}\n", r.mirror.empty() ? "-" : r.mirror);
+    for (int q = 0; q < static_cast<int>(s.coordinates.size()); ++q) out += fmt::format("  {:<40}", strongest(r, q));
+    out += '\n';
   }
   return out;
 }
@@ -185,8 +209,8 @@ std::string attractor_json(const AttractorRow& r, const ForcedSystem& s) {
                                 r.name, r.omega, to_string(r.attractor->kind), r.attractor->multiple, r.attractor->lyapunov,
                                 r.attractor->lyapunov_error, r.attractor->second_frequency, r.mirror, r.attractor->residual);
   for (std::size_t q = 0; q < s.coordinates.size(); ++q)
-    for (int h = 0; h <= harmonics_written; ++h)
-      out += fmt::format(R"(, "{}_h{}": {:.10g})", s.coordinates[q], h, std::abs(r.motion.harmonic(static_cast<int>(q), h)));
+    for (const auto& [h, name] : harmonics_of({r}))
+      out += fmt::format(R"(, "{}_h{}": {:.10g})", s.coordinates[q], name, std::abs(r.motion.harmonic(static_cast<int>(q), h)));
   return out;
 }
 

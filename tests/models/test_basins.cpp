@@ -131,7 +131,7 @@ TEST_CASE("diverging starts and an interrupted map") {
   CHECK((none.cell.array() == BasinMap::not_computed).all());
 }
 
-TEST_CASE("sweeps jump at the folds, up at one and down at the other", "[published]") {
+TEST_CASE("sweeps jump at the folds, up at one and down at the other", "[published][slow]") {
   // In plane: folds 1.98244040998 (up) and 1.70366257099 (down). Whirling: fold 1.82142291407 on the way up, whirling points 1.58096018215.
   const auto at = [](double p) { return stay(p); };
   SweepOptions o;
