@@ -22,6 +22,7 @@
 #include <cmath>
 #include <stdexcept>
 #include <string>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -51,6 +52,9 @@ using Fehlberg78 = boost::numeric::odeint::runge_kutta_fehlberg78<State>;
 
 template <class State, class System, class Stepper = Fehlberg78<State>>
 class ExplicitIntegrator {
+  static constexpr bool last_is_first =
+      std::is_same_v<typename Stepper::stepper_category, boost::numeric::odeint::explicit_error_stepper_fsal_tag>;  // the last stage of a step
+
  public:
   explicit ExplicitIntegrator(System system, const ExplicitOptions& options = {}) : system_(std::move(system)), options_(options) {
     options_.validate();
@@ -64,12 +68,14 @@ class ExplicitIntegrator {
       dydt_ = y;
       next_ = y;
       error_ = y;
+      slope_ = y;
     }
     if (tolerance_.size() != y.size()) {
       if (!options_.absolute.empty() && options_.absolute.size() != y.size())
         throw std::invalid_argument("as many absolute tolerances as components are needed");
       tolerance_ = options_.absolute.empty() ? std::vector<double>(y.size(), options_.absolute_tolerance) : options_.absolute;
     }
+    slope_known_ = false;
     stop_ = IntegrationStop::none;
   }
 
@@ -110,9 +116,11 @@ class ExplicitIntegrator {
  private:
   // One accepted step of at most |h|; shorter if the error says so.
   bool step(double h, double direction) {
-    system_(y_, dydt_, t_);
+    if (!slope_known_) system_(y_, dydt_, t_);
+    slope_known_ = true;
     for (;;) {
-      stepper_.do_step(std::ref(system_), y_, dydt_, t_, next_, h, error_);
+      if constexpr (last_is_first) stepper_.do_step(std::ref(system_), y_, dydt_, t_, next_, slope_, h, error_);
+      else stepper_.do_step(std::ref(system_), y_, dydt_, t_, next_, h, error_);
       const double e = error_norm();
       if (e <= 1.0) {
         const double factor = e > 1e-9 ? std::min(4.0, 0.9 * std::pow(e, -1.0 / Stepper::order_value)) : 4.0;
@@ -120,6 +128,8 @@ class ExplicitIntegrator {
         h_ = std::max(h_ * std::min(1.0, factor), std::abs(h) * factor);
         t_ += h;
         std::swap(y_, next_);
+        if constexpr (last_is_first) std::swap(dydt_, slope_);
+        slope_known_ = last_is_first;
         ++steps_;
         for (const double x : y_)
           if (!(std::abs(x) < options_.largest_norm)) return fail(IntegrationStop::diverged);
@@ -154,6 +164,8 @@ class ExplicitIntegrator {
   Stepper stepper_;
   std::vector<double> tolerance_;
   State y_{}, dydt_{}, next_{}, error_{};
+  State slope_{};  // of next_, if the stepper gives it
+  bool slope_known_ = false;
   double t_ = 0.0, h_ = 0.0;
   long steps_ = 0, rejected_ = 0;
   IntegrationStop stop_ = IntegrationStop::none;

@@ -124,13 +124,17 @@ def sections(result):
     columns = min(len(rows), 2)
     lines = -(-len(rows) // columns)
     phase = float(result.group("study").attributes.get("integrate.section_phase_deg", 0.0))
-    page = Page(7.0 if columns > 1 else 5.2, 3.2 * lines, f"Poincaré sections at excitation phase {phase:g}°", [study(result)])
+    keys = [marker_key("stroboscopic points", "o", markersize=3, color=VERMILLION), marker_key("their mean", "+", markersize=7, color=BLUE)]
+    page = Page(7.0 if columns > 1 else 5.2, 3.2 * lines, f"Poincaré sections at excitation phase {phase:g}°", [study(result)], keys)
     panels = page.subplots(lines, columns)
     for i, (axes, row) in enumerate(zip(panels.ravel(), rows)):
         section = result.group(f"integrate/{text_column(table, 'attractor', row)}/section")
         names = coordinates(section)
         moving = names[int(np.argmax([np.ptp(section.column(q)) for q in names]))]
         axes.plot(section.column(moving), section.column(f"{moving}'"), linestyle="none", marker="o", markersize=2.0, color=VERMILLION, markeredgewidth=0)
+        axes.plot(np.mean(section.column(moving)), np.mean(section.column(f"{moving}'")), marker="+", color=BLUE, markersize=7)
+        axes.grid(True, color="#ececec", linewidth=0.6)
+        axes.set_axisbelow(True)
         axes.set_xlabel(axis_label(section, moving))
         axes.set_ylabel(axis_label(section, f"{moving}'"))
         second = table.column("second_frequency")[row]
