@@ -1,5 +1,8 @@
 // The fast explicit integrator and the Fourier tools, against closed forms.
+#include <atomic>
 #include <catch2/catch.hpp>
+#include <cstdlib>
+#include <new>
 #include <numbers>
 
 #include "core/explicit_integrator.hpp"
@@ -7,12 +10,27 @@
 
 using namespace whirl;
 
+// Counts what the integrator allocates.
+static std::atomic<long> allocations{0};
+void* operator new(std::size_t size) {
+  ++allocations;
+  if (void* p = std::malloc(size)) return p;
+  throw std::bad_alloc();
+}
+void operator delete(void* p) noexcept { std::free(p); }
+void operator delete(void* p, std::size_t) noexcept { std::free(p); }
+
 namespace {
 using Pair = std::array<double, 2>;
 struct Oscillator {
   void operator()(const Pair& y, Pair& d, double) const {
     d[0] = y[1];
     d[1] = -y[0];
+  }
+};
+struct Chain {  // of any length
+  void operator()(const std::vector<double>& y, std::vector<double>& d, double t) const {
+    for (std::size_t i = 0; i < y.size(); ++i) d[i] = std::cos(t) - y[i] + (i > 0 ? y[i - 1] : 0.0);
   }
 };
 struct Blowup {
@@ -64,6 +82,23 @@ TEST_CASE("tolerances per component; divergence and misuse are told") {
   using Run = ExplicitIntegrator<Pair, Oscillator>;
   CHECK_THROWS_AS(Run(Oscillator{}, {.relative_tolerance = 0.0}), std::invalid_argument);
   CHECK_THROWS_AS(Run(Oscillator{}, {.absolute = {1e-3}}).restart(0.0, Pair{}), std::invalid_argument);
+}
+
+TEST_CASE("steps allocate nothing") {
+  ExplicitIntegrator<Pair, Oscillator> fixed(Oscillator{});
+  ExplicitIntegrator<std::vector<double>, Chain> dynamic(Chain{});
+  const std::vector<double> start(7, 0.5);
+  fixed.restart(0.0, {1.0, 0.0});
+  dynamic.restart(0.0, start);
+  REQUIRE((fixed.advance(1.0) && dynamic.advance(1.0)));  // the stepper sizes its stages at its first step
+  const long before = allocations, steps = dynamic.steps();
+  for (int k = 2; k < 20; ++k) {
+    if (!fixed.advance(k) || !dynamic.advance(k)) FAIL("stopped");
+    dynamic.restart(k, start);
+  }
+  const long after = allocations;
+  CHECK(after == before);
+  CHECK(dynamic.steps() > steps + 18);
 }
 
 TEST_CASE("Fourier transform against the definition; lines between the bins") {

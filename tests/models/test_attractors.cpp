@@ -102,6 +102,28 @@ TEST_CASE("the fast integrator agrees with CVODE on the stay to 1e-9") {
     }
 }
 
+TEST_CASE("three coordinates: states of any size") {
+  ModalSystem<double> s;  // a chain with a cubic end, forced at the other
+  s.omega = 1.3;
+  s.damping = {0.1, 0.15, 0.2};
+  s.stiffness = {2.0, 2.0, 1.0};
+  for (int i = 0; i < 3; ++i)
+    for (int j : {i - 1, i + 1})
+      if (j >= 0 && j < 3) s.add_term(i, -0.5, {j});
+  s.add_term(2, 0.8, {2, 2, 2});
+  s.add_force(0, 1.5, 1);
+  const Vector start = point({1, -1, 0.5, 0.2, 0, -0.7});
+  Stroboscope strobe(s, {.relative_tolerance = 1e-12, .absolute_tolerance = 1e-13});
+  Integrator cvode([&](double t, std::span<const double> y, std::span<double> d) { s.flow<double>(s.omega * t, y, d); }, 0.0, start,
+                   {.relative_tolerance = 1e-12, .absolute_tolerance = 1e-13});
+  Vector y = start;
+  Matrix m;
+  REQUIRE((strobe.map(y, m, 2) && cvode.advance(2.0 * strobe.period())));
+  CHECK((y - cvode.state()).norm() < 1e-9);
+  CHECK(m.determinant() == Approx(std::exp(-0.45 * 2.0 * strobe.period())).epsilon(1e-8));
+  CHECK(settled(s, start, MotionKind::periodic).multiple == 1);
+}
+
 TEST_CASE("the monodromy matrix of the variational equations is the difference quotient's, its determinant Liouville's") {
   const auto system = stay(1.65);
   Stroboscope strobe(system, {.relative_tolerance = 1e-12, .absolute_tolerance = 1e-13});
