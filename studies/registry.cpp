@@ -2,7 +2,9 @@
 
 #include <fmt/format.h>
 
+#include "studies/basins_study.hpp"
 #include "studies/continuation_study.hpp"
+#include "studies/integrate_study.hpp"
 #include "studies/periodic_study.hpp"
 #include "studies/slow_flow_study.hpp"
 #include "studies/superharmonic_study.hpp"
@@ -17,6 +19,8 @@ const std::vector<StudyKind>& study_kinds() {
       two_parameter_study(),
       periodic_study(),
       slow_flow_study(),
+      integrate_study(),
+      basins_study(),
   };
   return kinds;
 }
