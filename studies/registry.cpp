@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "studies/basins_study.hpp"
+#include "studies/compare_study.hpp"
 #include "studies/continuation_study.hpp"
 #include "studies/integrate_study.hpp"
 #include "studies/periodic_study.hpp"
@@ -14,13 +15,8 @@ namespace whirl::studies {
 
 const std::vector<StudyKind>& study_kinds() {
   static const std::vector<StudyKind> kinds = {
-      superharmonic_study(),
-      continuation_study(),
-      two_parameter_study(),
-      periodic_study(),
-      slow_flow_study(),
-      integrate_study(),
-      basins_study(),
+      superharmonic_study(), continuation_study(), two_parameter_study(), periodic_study(),
+      slow_flow_study(),     compare_study(),      integrate_study(),     basins_study(),
   };
   return kinds;
 }
