@@ -2,13 +2,16 @@
 
 #include <fmt/format.h>
 
+#include "studies/guy_modes_study.hpp"
+#include "studies/guy_statics_study.hpp"
+#include "studies/guy_stiffness_study.hpp"
 #include "studies/superharmonic_study.hpp"
 #include "studies/two_parameter_study.hpp"
 
 namespace whirl::studies {
 
 const std::vector<StudyKind>& study_kinds() {
-  static const std::vector<StudyKind> kinds = {superharmonic_study(), two_parameter_study()};
+  static const std::vector<StudyKind> kinds = {superharmonic_study(), two_parameter_study(), guy_statics_study(), guy_modes_study(), guy_stiffness_study()};
   return kinds;
 }
 
