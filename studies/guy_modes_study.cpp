@@ -43,7 +43,7 @@ Schema schema() {
          .max_items = 2});
   s.add({.name = "scan.points",
          .description = "tensions of the scan, equally spaced in their logarithm",
-         .default_value = std::int64_t{61},
+         .default_value = std::int64_t{121},
          .lower = 2,
          .upper = 10000,
          .closed_lower = true,
