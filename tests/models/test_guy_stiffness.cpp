@@ -7,6 +7,7 @@
 
 #include "models/guy/closed_stiffness.hpp"
 #include "models/guy/collocation.hpp"
+#include "models/guy/level.hpp"
 #include "models/guy/linear_guy.hpp"
 #include "models/guy/mode_count.hpp"
 #include "models/guy/tangent.hpp"
@@ -331,6 +332,64 @@ TEST_CASE("a taut guy without weight is a bar and a string") {
   CHECK(k.xy.real() == Approx(0.48 * (along - across)).epsilon(1e-9));
   CHECK(k.yy.real() == Approx(0.64 * along + 0.36 * across).epsilon(1e-9));
   CHECK(k.zz.real() == Approx(across).epsilon(1e-9));
+}
+
+TEST_CASE("limits: hanging vertically, deep slack, level") {
+  // a nearly vertical guy: its tension is linear, so K_xx is that of the string with linear tension; damped
+  const Guy mast{.horizontal_span = 1e-4, .rise = 100.0, .axial_stiffness = 1e11, .mass_per_length = 5.0};
+  const Statics hanging = solve(mast, Known::upper_tension, 12000.0);
+  const LinearGuy vertical(hanging, 20.0);
+  const ClosedStiffness bessel(hanging);
+  for (const double p : {0.5, 3.0, 9.0, 17.0}) {
+    const StiffnessMatrix k = vertical.stiffness(p, 0.05);
+    CHECK(std::abs(k.xx - k.zz) < 1e-4 * std::abs(k.zz));
+    CHECK(std::abs(bessel.out_of_plane(p, 0.05) - k.zz) < 1e-4 * std::abs(k.zz));  // T/AE times the phase
+  }
+  for (const double rise : {0.0, 30.0})
+    for (const double r : {1.0, 3.0}) {  // a cable up to 3.3 times as long as its span
+      const Guy g{.horizontal_span = 60.0, .rise = rise, .axial_stiffness = 1e8, .mass_per_length = 4.0};
+      const Statics slack = at_horizontal_tension(g, 0.5 * g.weight() * g.horizontal_span / r);
+      const double top = 8.0 * string_frequency(slack, 1);
+      const LinearGuy full(slack, top);
+      INFO("r = " << r << ", rise " << rise << ", degree " << full.degree());
+      CHECK(full.poles(Plane::in_plane).size() == static_cast<std::size_t>(modes_below(slack, Plane::in_plane, top)));
+      CHECK(full.poles(Plane::out_of_plane).size() == static_cast<std::size_t>(modes_below(slack, Plane::out_of_plane, top)));
+      const StiffnessMatrix a = full.stiffness(0.6 * top, 0.1), b = collocated_stiffness(slack, 0.6 * top, 0.1, full.degree());
+      CHECK(std::abs(a.xx - b.xx) < 1e-5 * std::abs(a.xx));  // collocation's conditioning: AE/T up to 1e5
+      CHECK(std::abs(a.zz - b.zz) < 1e-8 * std::abs(a.zz));
+    }
+}
+
+TEST_CASE("the classical closed form is not passive either; the completed one is") {
+  for (const Statics& rest : {oklahoma_rest(), davenport_rest()}) {
+    const ClosedStiffness closed(rest);
+    const double w1 = closed.string_frequency();
+    int classical = 0, completed = 0;
+    for (int i = 1; i <= 1000; ++i) {
+      classical += closed.modulus(ClosedForm::classical, 0.01 * i * w1, 0.01 * w1).imag() < 0.0;
+      completed += closed.modulus(ClosedForm::completed, 0.01 * i * w1, 0.01 * w1).imag() < 0.0;
+    }
+    CHECK(classical > 300);
+    CHECK(completed == 0);
+  }
+}
+
+TEST_CASE("a level of guys: symmetric, isotropic for three, static limit") {
+  const Statics rest = davenport_rest();
+  const LinearGuy guy(rest, 80.0);
+  const double third = 2.0 * std::numbers::pi / 3.0;
+  const Eigen::Matrix3cd k = level_stiffness({{&guy, 0.4}, {&guy, 0.4 + third}, {&guy, 0.4 + 2.0 * third}}, 30.0, 0.1);
+  const StiffnessMatrix own = guy.stiffness(30.0, 0.1);
+  CHECK(std::abs(k(0, 0) - 1.5 * (own.xx + own.zz)) < 1e-9 * std::abs(own.xx));
+  CHECK(std::abs(k(1, 1) - k(0, 0)) < 1e-9 * std::abs(own.xx));
+  CHECK(std::abs(k(0, 1)) < 1e-9 * std::abs(own.xx));
+  CHECK(std::abs(k(0, 2)) < 1e-9 * std::abs(own.xx));
+  CHECK(std::abs(k(2, 2) - 3.0 * own.yy) < 1e-9 * std::abs(own.yy));
+  const Eigen::Matrix3cd one = level_stiffness({{&guy, 0.0}}, 30.0, 0.1);  // the anchor at +X: the guy's own x is -X
+  CHECK(std::abs(one(0, 0) - own.xx) < 1e-9 * std::abs(own.xx));
+  CHECK(std::abs(one(0, 2) + own.xy) < 1e-9 * std::abs(own.xx));
+  CHECK(std::abs(one(1, 1) - own.zz) < 1e-9 * std::abs(own.xx));
+  CHECK_THROWS_AS(level_stiffness({}, 1.0, 0.0), std::invalid_argument);
 }
 
 TEST_CASE("series of 1 - tan x/x meets the closed form") {
