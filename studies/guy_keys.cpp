@@ -118,7 +118,6 @@ GuyInput guy_of(const Configuration& c) {
   const Form form = c.text("guy.form") == "exact" ? Form::exact : Form::first_order, other = form == Form::exact ? Form::first_order : Form::exact;
   GuyInput in;
   in.installed = blame(c, "guy.value", [&] { return solve(bare, known, c.number("guy.value"), form); });
-  in.exact_installed = form == Form::exact ? in.installed : at_horizontal_tension(bare, in.installed.horizontal_tension, Form::exact);
   const double ice = c.number("condition.ice_mass_per_length"), warmer = c.number("condition.temperature_change");
   if (ice == 0.0 && warmer == 0.0) {
     in.rest = in.installed;

@@ -19,8 +19,8 @@ void add_guy_damping_keys(Schema& schema);
 
 /// The guy of a study file: as installed, and in its condition (ice on it, warmer or colder) at the same unstressed length.
 struct GuyInput {
-  models::guy::Statics installed, rest;                      ///< of the form asked for
-  models::guy::Statics exact_installed, exact, first_order;  ///< `rest` in both forms; all three share its unstressed length or tension
+  models::guy::Statics installed, rest;     ///< of the form asked for
+  models::guy::Statics exact, first_order;  ///< `rest` and its twin of the other form at the same H
 };
 
 /// InputError at the key that is to blame.

@@ -2,9 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <boost/math/tools/toms748_solve.hpp>
 #include <cmath>
 #include <numeric>
 #include <stdexcept>
+#include <utility>
 
 namespace whirl::models::guy {
 namespace {
@@ -17,23 +19,39 @@ void require_first_order(const Statics& s) {
   if (s.form != Form::first_order) throw std::invalid_argument("lumped guy: needs a static state of the first-order form");
 }
 
-struct Energy {
-  double value = 0.0, g_h = 0.0, g_v = 0.0, hh = 0.0, hv = 0.0, vv = 0.0;
+// Gradient of the energy: how far the chain reaches beyond the far end, and its slope with V.
+struct Reach {
+  double x, y, y_slope;
 };
 
-Energy energy(const Guy& g, const std::vector<double>& l, const std::vector<double>& w, double AE, double H, double V) {
-  Energy e{.value = -H * g.horizontal_span - V * g.rise, .g_h = -g.horizontal_span, .g_v = -g.rise};
+Reach reach(const Guy& g, const std::vector<double>& l, const std::vector<double>& w, double AE, double H, double V) {
+  Reach r{-g.horizontal_span, -g.rise, 0.0};
   for (std::size_t i = 0; i < l.size(); ++i) {
-    const double T = std::hypot(H, V), c = H / T, s = V / T, stretch = 1.0 / T + 1.0 / AE;
-    e.value += l[i] * (T + 0.5 * T * T / AE);
-    e.g_h += l[i] * H * stretch;
-    e.g_v += l[i] * V * stretch;
-    e.hh += l[i] * (s * s / T + 1.0 / AE);
-    e.hv -= l[i] * c * s / T;
-    e.vv += l[i] * (c * c / T + 1.0 / AE);
+    const double T = std::hypot(H, V), c = H / T;
+    r.x += l[i] * (c + H / AE);
+    r.y += l[i] * (V / T + V / AE);
+    r.y_slope += l[i] * (c * c / T + 1.0 / AE);
     if (i < w.size()) V += w[i];
   }
-  return e;
+  return r;
+}
+
+// The V at which the chain ends at the right height: the height grows with V, its slope known; Newton's method inside a bracket.
+double balanced_vertical(const Guy& g, const std::vector<double>& l, const std::vector<double>& w, double AE, double H, double load) {
+  double lo = -load - H, hi = H, step = load + H;
+  while (reach(g, l, w, AE, H, lo).y > 0.0) lo -= (step *= 2.0);
+  while (reach(g, l, w, AE, H, hi).y < 0.0) hi += (step *= 2.0);
+  double V = 0.5 * (lo + hi);
+  for (int i = 0; i < 200; ++i) {
+    const Reach r = reach(g, l, w, AE, H, V);
+    (r.y > 0.0 ? hi : lo) = V;
+    double next = V - r.y / r.y_slope;
+    if (!(next > lo && next < hi)) next = 0.5 * (lo + hi);
+    const double moved = std::abs(next - V);
+    V = next;
+    if (moved <= 1e-16 * (std::abs(V) + H)) break;
+  }
+  return V;
 }
 
 Polygon polygon(const std::vector<double>& l, const std::vector<double>& w, double AE, double H, double V) {
@@ -87,25 +105,20 @@ Polygon hung_masses(const Guy& g, const std::vector<double>& l, const std::vecto
   const double total = std::accumulate(l.begin(), l.end(), 0.0), load = std::accumulate(w.begin(), w.end(), 0.0);
   if (!(AE > 0.0) || (std::isinf(AE) && !(total > g.chord() * (1.0 + 1e-12))))
     throw std::invalid_argument(fmt::format("lumped guy: a line of {:.8g} m cannot reach over a chord of {:.8g} m", total, g.chord()));
-  double H = load * g.chord_cosine(), V = H * g.rise / g.horizontal_span - 0.5 * load;
-  Energy e = energy(g, l, w, AE, H, V);
-  double before = std::numeric_limits<double>::infinity();
-  for (int i = 0; i < 200; ++i) {
-    const double det = e.hh * e.vv - e.hv * e.hv;
-    const double dH = -(e.vv * e.g_h - e.hv * e.g_v) / det, dV = -(e.hh * e.g_v - e.hv * e.g_h) / det, fall = dH * e.g_h + dV * e.g_v;
-    const double step = std::hypot(dH, dV) / std::hypot(H, V), slope = std::hypot(e.g_h, e.g_v);
-    if (step < 1e-15 || (step < 1e-8 && step >= before)) return polygon(l, w, AE, H, V);  // rounding
-    before = step;
-    double t = 1.0;
-    Energy next = energy(g, l, w, AE, H + dH, V + dV);
-    // Near the end the energy's own rounding hides its fall, the gradient's does not.
-    while (!(next.value <= e.value + 1e-4 * t * fall || std::hypot(next.g_h, next.g_v) < 0.9 * slope) && t > 1e-9 && step > 1e-8) {
-      t *= 0.5;
-      next = energy(g, l, w, AE, H + t * dH, V + t * dV);
-    }
-    H += t * dH;
-    V += t * dV;
-    e = next;
+  // With V balanced, the energy is convex in H alone: its slope, the horizontal reach, grows with H.
+  const auto f = [&](double x) {
+    const double H = std::exp(x);
+    return reach(g, l, w, AE, H, balanced_vertical(g, l, w, AE, H, load)).x / g.horizontal_span;
+  };
+  double lo = std::log(load * g.chord_cosine()), hi = lo, f_lo = f(lo), f_hi = f_lo;
+  while (f_hi < 0.0 && hi < lo + 80.0) f_hi = f(hi += 1.0);
+  while (f_lo > 0.0 && lo > hi - 80.0) f_lo = f(lo -= 1.0);
+  if (f_lo <= 0.0 && f_hi >= 0.0) {
+    std::uintmax_t steps = 200;
+    const auto root =
+        lo == hi ? std::pair{lo, hi} : boost::math::tools::toms748_solve(f, lo, hi, f_lo, f_hi, boost::math::tools::eps_tolerance<double>(52), steps);
+    const double H = std::exp(0.5 * (root.first + root.second));
+    return polygon(l, w, AE, H, balanced_vertical(g, l, w, AE, H, load));
   }
   throw std::runtime_error("lumped guy: no equilibrium with all lines taut was found");
 }

@@ -9,8 +9,9 @@
 ///
 ///     Phi(H, V) = sum l_i (T_i + T_i^2/2AE) - H l - V h,   T_i = hypot(H, V + W_1 + ... + W_i)
 ///
-/// so Newton's method with a line search finds the only solution. Segments may stretch. Throws std::invalid_argument for fewer than one mass, weights
-/// or segments that are not positive, and an inextensible line shorter than the chord; std::runtime_error if a line would hang slack.
+/// so with V balanced for each H its slope is monotone in H, and bracketing finds the only solution. Segments may stretch. Throws
+/// std::invalid_argument for fewer than one mass, weights or segments that are not positive, and an inextensible line shorter than the chord;
+/// std::runtime_error if a line would hang slack.
 ///
 ///     const Polygon p = hung_masses(guy, std::vector(6, L/6), std::vector(5, w*L/6));
 ///     p.horizontal_tension, p.x[3], p.tension[0]

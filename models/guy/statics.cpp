@@ -85,6 +85,16 @@ void require_physical(const Statics& s) {
         fmt::format("guy: a tension of {:.6g} N strains it by more than {:g} %", std::max(s.upper_tension, s.lower_tension), 100.0 * largest_strain));
 }
 
+// log of the least H whose slack weight does not strain the guy beyond the limit by itself.
+double slackest(const Guy& g, double top) {
+  double low = std::log(0.5 * g.weight() * g.horizontal_span / slackest_r);
+  for (; low < top - 0.2; low += 0.1) {
+    const Statics s = first_order_state(g, std::exp(low));
+    if (std::max(s.upper_tension, s.lower_tension) < largest_strain * g.axial_stiffness) break;
+  }
+  return low;
+}
+
 bool grows_with_tension(Known k) { return k != Known::unstressed_length && k != Known::sag; }
 
 std::invalid_argument out_of_reach(const Guy& g, Known known, double value, double bound, bool too_low) {
@@ -185,7 +195,7 @@ Statics solve(const Guy& guy, Known known, double value, Form form) {
   const double sign = grows_with_tension(known) ? 1.0 : -1.0;
   const auto excess = [&](double x) { return sign * (value_of(state_at(guy, std::exp(x), form), known) / value - 1.0); };
   const double top = std::log(largest_strain * guy.axial_stiffness * guy.chord_cosine());
-  double low = std::log(0.5 * guy.weight() * guy.horizontal_span / slackest_r);
+  double low = slackest(guy, top);
   const bool tension = known == Known::lower_tension || known == Known::upper_tension;
   if (tension) low = boost::math::tools::brent_find_minima(excess, low, top, 50).first;
   double hi = top, lo = top, f_hi = excess(top), f_lo = f_hi;

@@ -75,6 +75,16 @@ TEST_CASE("a chain of hung masses closes, balances, and tends to the elastic cat
     for (int i = 0; i < n; ++i)
       CHECK(p.horizontal_tension * (p.slope[i + 1] - p.slope[i]) == Approx(w[i]).epsilon(1e-9).margin(1e-12 * p.tension[0]));
   }
+  for (const double sag : {30.0, 300.0, 1000.0}) {  // slack guys: half a kilometre of chord
+    const Statics slack = solve(oklahoma(), Known::sag, sag, Form::first_order);
+    for (const int n : {1, 5, 40}) {
+      if (n < sag / 40.0) continue;  // a few long lines cannot close without one of them going slack
+      const Polygon p = equal_hung_masses(slack, n);
+      CHECK(p.x.back() == Approx(slack.guy.horizontal_span).epsilon(1e-10));
+      CHECK(p.y.back() == Approx(slack.guy.rise).epsilon(1e-10));
+    }
+    CHECK(equal_hung_masses(slack, 300).horizontal_tension == Approx(slack.horizontal_tension).epsilon(2e-3));
+  }
   const Statics s = oklahoma_rest();
   const auto error = [&](int n) {  // n + 1 equal segments; half a segment's weight rests on each end
     const double part = s.unstressed_length / (n + 1);

@@ -293,6 +293,11 @@ TEST_CASE("impossible guys are refused") {
   CHECK_THROWS_WITH(at_horizontal_tension(g, 1.0), Catch::Contains("too slack"));
   CHECK_THROWS_AS(solve(g, Known::sag, 0.0), std::invalid_argument);
   CHECK_THROWS_AS(solve(g, Known::first_frequency, 1e4), std::invalid_argument);
+  for (const Form form : {Form::exact, Form::first_order}) {
+    CHECK_THROWS_AS(solve(g, Known::first_frequency, 1e-5, form), std::invalid_argument);
+    CHECK_THROWS_AS(solve(g, Known::sag, 1e7, form), std::invalid_argument);
+    CHECK_THROWS_WITH(solve(g, Known::unstressed_length, 1e7, form), Catch::Contains("too long"));
+  }
   Guy bad = g;
   bad.mass_per_length = 0.0;
   CHECK_THROWS_AS(at_horizontal_tension(bad, 1e5), std::invalid_argument);
