@@ -7,7 +7,7 @@
 #include <stdexcept>
 
 #include "core/complex_bessel.hpp"
-#include "core/legendre.hpp"
+#include "models/guy/legendre_basis.hpp"
 #include "models/guy/tangent.hpp"
 
 namespace whirl::models::guy {

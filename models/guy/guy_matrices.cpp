@@ -6,7 +6,7 @@
 #include <complex>
 #include <stdexcept>
 
-#include "core/legendre.hpp"
+#include "models/guy/legendre_basis.hpp"
 
 namespace whirl::models::guy {
 

@@ -9,8 +9,8 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "core/legendre.hpp"
 #include "models/guy/guy_matrices.hpp"
+#include "models/guy/legendre_basis.hpp"
 
 namespace whirl::models::guy {
 namespace {

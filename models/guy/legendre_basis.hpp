@@ -12,7 +12,7 @@
 
 #include <Eigen/Core>
 
-namespace whirl {
+namespace whirl::models::guy {
 
 struct GaussRule {
   Eigen::VectorXd nodes, weights;  ///< increasing in (-1, 1); sum 2
@@ -25,4 +25,4 @@ struct LegendreBasis {
   Eigen::MatrixXd value, slope;  ///< row: point, column: function j = 0 ... degree - 1
 };
 
-}  // namespace whirl
+}  // namespace whirl::models::guy

@@ -1,4 +1,4 @@
-#include "core/legendre.hpp"
+#include "models/guy/legendre_basis.hpp"
 
 #include <fmt/format.h>
 
@@ -7,7 +7,7 @@
 #include <stdexcept>
 #include <utility>
 
-namespace whirl {
+namespace whirl::models::guy {
 namespace {
 
 // P_n(x) and P_{n-1}(x) by the three-term recurrence.
@@ -53,4 +53,4 @@ LegendreBasis::LegendreBasis(int degree, const Eigen::VectorXd& x) : value(x.siz
   }
 }
 
-}  // namespace whirl
+}  // namespace whirl::models::guy
