@@ -117,22 +117,24 @@ void write_listed(ResultFile& file, const GuyStiffnessSetup& s, const std::vecto
   const double w1 = string_frequency(s.guy.first_order, 1);
   TextColumn direction{"direction", "of force and motion", {}}, type{"type", "pole: a mode with both ends held; zero: no force at the mast", {}};
   for (const PoleOrZero& p : all) direction.values.push_back(p.direction), type.values.push_back(p.type);
-  file.table("/poles_and_zeros",
-             {column("omega", "rad/s", "undamped", all.size(), [&](auto i) { return all[i].omega; }),
-              column("omega_ratio", "-", "omega / w_1 of the mean-tension string", all.size(), [&](auto i) { return all[i].omega / w1; }),
-              column("strength", "N/m", "near a pole K ~ -strength / (1 - p_e^2 / omega^2); 0 for zeros", all.size(),
-                     [&](auto i) { return all[i].strength; })},
-             {direction, type});
+  file.table(
+      "/poles_and_zeros",
+      {column("omega", "rad/s", "undamped", all.size(), [&](auto i) { return all[i].omega; }),
+       column("omega_ratio", "-", "omega / w_1 of the mean-tension string", all.size(), [&](auto i) { return all[i].omega / w1; }),
+       column("damping_ratio", "-", "c / (2 m omega), of this mode or zero", all.size(), [&](auto i) { return 0.5 * s.damping_rate / all[i].omega; }),
+       column("strength", "N/m", "near a pole K ~ -strength / (1 - p_e^2 / omega^2); 0 for zeros", all.size(),
+              [&](auto i) { return all[i].strength; })},
+      {direction, type});
 }
 
-// Error of the horizontal modulus against the degree, both methods, from a solution of three times the suitable degree.
+// Error of the horizontal modulus against the degree, up to 160, both methods, from a solution of twice the suitable degree.
 void write_convergence(ResultFile& file, const GuyStiffnessSetup& s) {
   const double p = s.convergence_omega;
   const int fine = std::min(largest_degree, 2 * suitable_degree(s.guy.exact, p));
   const C reference = LinearGuy(s.guy.exact, p, fine).modulus(Direction::horizontal, p, s.damping_rate);
   std::vector<double> degree, galerkin, collocation;
-  const int last = static_cast<int>(1.25 * suitable_degree(s.guy.exact, p)),
-            step = 2 * std::max(1, last / 60);  // even: collocation differs with parity
+  const int last = std::min(160, static_cast<int>(1.25 * suitable_degree(s.guy.exact, p)));
+  const int step = 2 * std::max(1, last / 60);  // even: collocation differs with parity
   for (int n = 4; n <= last && !interrupted; n += step) {
     degree.push_back(n);
     galerkin.push_back(std::abs(LinearGuy(s.guy.exact, p, n).modulus(Direction::horizontal, p, s.damping_rate) - reference) / std::abs(reference));

@@ -66,7 +66,7 @@ Schema schema() {
          .max_items = 100});
   s.add({.name = "convergence.omega",
          .unit = "rad/s",
-         .description = "frequency at which the error against the degree is measured; default: the upper end",
+         .description = "frequency at which the error against the degree is measured; default: the upper end, or what degree 125 resolves",
          .optional = true,
          .lower = 0.0,
          .example = Value{3.14}});
@@ -88,7 +88,10 @@ Setup setup(const Configuration& c) {
   const auto guys = c.integer("level.guys");
   if (guys > 0 && !s.azimuths.empty()) throw c.error("level.guys", "is given beside level.azimuths_deg: give one of them");
   for (int j = 0; j < guys; ++j) s.azimuths.push_back(360.0 * j / static_cast<double>(guys));
-  s.convergence_omega = c.has("convergence.omega") ? c.number("convergence.omega") : s.omega.back();
+  s.convergence_omega = s.omega.back();
+  if (c.has("convergence.omega")) s.convergence_omega = c.number("convergence.omega");
+  else
+    while (suitable_degree(s.guy.exact, s.convergence_omega) > 125 && s.convergence_omega > s.omega.front()) s.convergence_omega *= 0.8;
   if (s.convergence_omega > s.omega.back()) throw c.error("convergence.omega", "must lie within stiffness.range");
   blame(c, s.degree > 0 ? "stiffness.degree" : "stiffness.range", [&] { (void)LinearGuy(s.guy.exact, s.omega.back(), s.degree); });
   return s;
