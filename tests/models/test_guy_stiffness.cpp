@@ -334,7 +334,7 @@ TEST_CASE("a taut guy without weight is a bar and a string") {
   CHECK(k.zz.real() == Approx(across).epsilon(1e-9));
 }
 
-TEST_CASE("limits: hanging vertically, deep slack, level") {
+TEST_CASE("limits: hanging vertically, deep slack, level", "[slow]") {
   // a nearly vertical guy: its tension is linear, so K_xx is that of the string with linear tension; damped
   const Guy mast{.horizontal_span = 1e-4, .rise = 100.0, .axial_stiffness = 1e11, .mass_per_length = 5.0};
   const Statics hanging = solve(mast, Known::upper_tension, 12000.0);
