@@ -3,7 +3,7 @@
 ///
 ///     (D u')' + m p_e^2 u = 0,   u = 0 at the anchor,   K(p) = [D u'] at the mast for unit motion e^{ipt} there,   p_e^2 = p^2 - i p c/m
 ///
-/// (code form of [Sarvi1968, eqs (3.25)-(3.30)] with the term eta/R in the strain that he lost). Spectral Galerkin, one eigenproblem for all
+/// in place of [Sarvi1968, eqs (3.28)-(3.30)], whose strain lacks the term eta/R. Spectral Galerkin, one eigenproblem for all
 /// frequencies: with the static lift of the end, Ks its stiffness, Mb its mass, mu_n = 1/w_n^2 and g_n the modes' shares of it,
 ///
 ///     K(p) = Ks - p_e^2 Mb - p_e^4 sum_n g_n g_n^T / (1 - p_e^2 mu_n)
