@@ -11,7 +11,8 @@
 namespace whirl::studies {
 
 const std::vector<StudyKind>& study_kinds() {
-  static const std::vector<StudyKind> kinds = {superharmonic_study(), two_parameter_study(), guy_statics_study(), guy_modes_study(), guy_stiffness_study()};
+  static const std::vector<StudyKind> kinds = {superharmonic_study(), two_parameter_study(), guy_statics_study(), guy_modes_study(),
+                                               guy_stiffness_study()};
   return kinds;
 }
 

@@ -184,7 +184,7 @@ TEST_CASE("Galerkin and collocation agree, and converge spectrally") {
   }
 }
 
-TEST_CASE("automatic degree is enough, also for slack and level guys") {
+TEST_CASE("automatic degree is enough, also for slack and level guys", "[slow]") {
   std::mt19937 random(11);
   for (int i = 0; i < 12; ++i) {
     const Statics rest = random_guy(random);
@@ -202,7 +202,7 @@ TEST_CASE("automatic degree is enough, also for slack and level guys") {
   }
 }
 
-TEST_CASE("a damped guy takes in energy: Im K is positive semidefinite") {
+TEST_CASE("a damped guy takes in energy: Im K is positive semidefinite", "[slow]") {
   std::mt19937 random(5);
   std::uniform_real_distribution<double> u(0.0, 1.0);
   for (int i = 0; i < 60; ++i) {
@@ -228,7 +228,7 @@ TEST_CASE("a damped guy takes in energy: Im K is positive semidefinite") {
   }
 }
 
-TEST_CASE("no mode is missed: eigenproblem, collocation and inertia count the same") {
+TEST_CASE("no mode is missed: eigenproblem, collocation and inertia count the same", "[slow]") {
   // level guy through lambda^2 = 4 pi^2, where the first symmetric and antisymmetric in-plane modes cross
   const double pi = std::numbers::pi;
   double closest = 1.0;
