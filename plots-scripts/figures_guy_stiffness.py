@@ -58,10 +58,12 @@ def modulus(result):
     top.legend(handles=[marker_key("poles", "x", color=INK), marker_key("zeros", "o", color=INK, markerfacecolor="none")], loc="upper right", ncol=2,
                frameon=True, facecolor="white", edgecolor="none", framealpha=0.9)
     top.set(ylim=(low_end, high), ylabel=r"Re $K/K_{\mathrm{static}}$", xlim=(0, x[-1]))
-    middle.set(yscale="log", ylabel=r"Im $K/K_{\mathrm{static}}$")
+    middle.set_ylabel(r"Im $K/K_{\mathrm{static}}$")
     full_im = table.column("full_im") / static
     if np.any(full_im > 0):
-        middle.set_ylim(0.3 * np.min(full_im[full_im > 0]), 3 * np.max(full_im))
+        middle.set(yscale="log", ylim=(0.3 * np.min(full_im[full_im > 0]), 3 * np.max(full_im)))
+    else:
+        middle.text(0.5, 0.5, "no damping, no imaginary part", transform=middle.transAxes, ha="center", va="center", color=GREY)
     if forms:
         low.set(yscale="log", ylim=(1e-4, 1e1))
     low.set(xlabel=r"$\Omega = p/\omega_1$ of the mean-tension string", ylabel="error of the\nclosed forms")

@@ -348,6 +348,16 @@ def test_guys(folder):
         check(done.returncode == 0 and done.stderr == "", done.stderr)
 
 
+def test_undamped_guy(folder):
+    path = os.path.join(folder, "undamped.h5")
+    guy_stiffness(path)
+    with h5py.File(path, "r+") as file:
+        for name in ("full_im", "classical_im"):
+            file[f"stiffness/horizontal/{name}"][:] = 0.0
+    done = plot(path, "--format", "png")
+    check(done.returncode == 0 and done.stderr == "", done.stderr)
+
+
 def test_jumps_through_infinity_are_cut(folder):
     import figures_guy_stiffness
     x, y = figures_guy_stiffness.broken(np.arange(6.0), [1.0, 5.0, -5.0, -1.0, 0.5, 1.0], 8.0)
