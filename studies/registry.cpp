@@ -5,6 +5,9 @@
 #include "studies/basins_study.hpp"
 #include "studies/compare_study.hpp"
 #include "studies/continuation_study.hpp"
+#include "studies/guy_modes_study.hpp"
+#include "studies/guy_statics_study.hpp"
+#include "studies/guy_stiffness_study.hpp"
 #include "studies/integrate_study.hpp"
 #include "studies/periodic_study.hpp"
 #include "studies/slow_flow_study.hpp"
@@ -15,8 +18,17 @@ namespace whirl::studies {
 
 const std::vector<StudyKind>& study_kinds() {
   static const std::vector<StudyKind> kinds = {
-      superharmonic_study(), continuation_study(), two_parameter_study(), periodic_study(),
-      slow_flow_study(),     compare_study(),      integrate_study(),     basins_study(),
+      superharmonic_study(),
+      continuation_study(),
+      two_parameter_study(),
+      periodic_study(),
+      slow_flow_study(),
+      compare_study(),
+      integrate_study(),
+      basins_study(),
+      guy_statics_study(),
+      guy_modes_study(),
+      guy_stiffness_study(),
   };
   return kinds;
 }
