@@ -179,7 +179,7 @@ def title(curves, symbols):
     nouns = {"WH": "whirling", "BP": "branch", "LP": "fold", "HB": "Hopf", "PD": "period-doubling", "SB": "symmetry-breaking", "TR": "torus"}
     words = [nouns[k] for k in CURVES if any(c.kind == k for c in curves)]
     joined = " and ".join(filter(None, (", ".join(words[:-1]), words[-1])))
-    return f"{joined[0].upper()}{joined[1:]} points in the plane of {symbols[0]} and {symbols[1]}, two-parameter study"
+    return f"{joined[0].upper()}{joined[1:]} points in the plane of {symbols[0]} and {symbols[1]}"
 
 
 def study_sentence(result, words, parameters):

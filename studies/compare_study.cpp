@@ -184,20 +184,22 @@ void write_integrated(ResultFile& file, const ForcedSystem& source, const Setup&
   file.flush();
 }
 
-// The transition of a sweep whose bracket holds the frequency, widened to ten times the tolerance.
-std::optional<SweepTransition> transition_at(const Integrated& integrated, double omega, double tolerance) {
-  std::optional<SweepTransition> best;
-  double nearest = 0.01;  // a sweep jumps a little late
+// Of each exact point the transition of a sweep that is nearest to it and to no other point, up to 0.01 rad/s away: a sweep jumps a little late.
+std::vector<std::optional<double>> transitions_of(const std::vector<Match>& matches, const Integrated& integrated) {
+  std::vector<std::optional<double>> found(matches.size());
+  std::vector<double> apart(matches.size(), 0.01);
   for (const Sweep* sweep : {&integrated.up, &integrated.down})
     for (const auto& t : sweep->transitions) {
-      const double low = std::min(t.before, t.after) - tolerance, high = std::max(t.before, t.after) + tolerance;
-      const double apart = std::max({0.0, low - omega, omega - high});
-      if (apart < nearest) {
-        nearest = apart;
-        best = t;
-      }
+      const double at = 0.5 * (t.before + t.after);
+      std::size_t nearest = matches.size();
+      for (std::size_t i = 0; i < matches.size(); ++i)
+        if (matches[i].exact && (nearest == matches.size() || std::abs(matches[i].exact->p - at) < std::abs(matches[nearest].exact->p - at)))
+          nearest = i;
+      if (nearest == matches.size() || std::abs(matches[nearest].exact->p - at) >= apart[nearest]) continue;
+      apart[nearest] = std::abs(matches[nearest].exact->p - at);
+      found[nearest] = at;
     }
-  return best;
+  return found;
 }
 
 // ---- table ------------------------------------------------------------------------------------------------------------------
@@ -217,7 +219,9 @@ void write_matches(ResultFile& file, const ForcedSystem& source, const Setup& s,
     table.push_back({fmt::format("amplitude_error_{}", level), "-", "distance of the amplitudes over the exact ones", {}});
   }
   table.push_back({"omega_integrated", "rad/s", "middle of the bracket of a sweep's transition there", {}});
-  for (const Match& m : matches) {
+  const auto transitions = transitions_of(matches, integrated);
+  for (std::size_t row = 0; row < matches.size(); ++row) {
+    const Match& m = matches[row];
     std::size_t k = 0;
     const auto put = [&](double x) { table[k++].values.push_back(x); };
     for (const auto* p : {&m.exact, &m.frozen, &m.complete}) {
@@ -229,8 +233,7 @@ void write_matches(ResultFile& file, const ForcedSystem& source, const Setup& s,
       put(both ? (*p)->p - m.exact->p : std::nan(""));
       put(both && m.exact->amplitudes.norm() > 0.0 ? ((*p)->amplitudes - m.exact->amplitudes).norm() / m.exact->amplitudes.norm() : std::nan(""));
     }
-    const auto t = m.exact ? transition_at(integrated, m.exact->p, s.sweep_tolerance) : std::nullopt;
-    put(t ? 0.5 * (t->before + t->after) : std::nan(""));
+    put(transitions[row].value_or(std::nan("")));
     kinds.values.push_back(m.kind);
     words.values.push_back(m.words());
     branches.values.push_back((m.exact ? m.exact : m.complete ? m.complete : m.frozen)->branch);
@@ -242,22 +245,23 @@ void write_matches(ResultFile& file, const ForcedSystem& source, const Setup& s,
 std::string number(bool known, double x) { return known ? fmt::format("{:>12.7f}", x) : fmt::format("{:>12}", "-"); }
 std::string change(bool known, double x) { return known ? fmt::format("{:>+10.2e}", x) : fmt::format("{:>10}", "-"); }
 
-std::string points_text(const Setup& s, const std::vector<Match>& matches, const Integrated& integrated) {
+std::string points_text(const std::vector<Match>& matches, const Integrated& integrated) {
   std::string out = fmt::format("{:<6} {:<7} {:>12} {:>12} {:>10} {:>8} {:>12} {:>10} {:>8} {:>12}  {}\n", "point", "branch", "exact", "frozen",
                                 "shift", "amp.", "complete", "shift", "amp.", "integrated", "found");
-  for (const Match& m : matches) {
+  const auto transitions = transitions_of(matches, integrated);
+  for (std::size_t row = 0; row < matches.size(); ++row) {
+    const Match& m = matches[row];
     const auto error = [&](const std::optional<LevelPoint>& p) {
       if (!p || !m.exact || !(m.exact->amplitudes.norm() > 0.0)) return fmt::format("{:>8}", "-");
       return fmt::format("{:>7.1f}%", 100.0 * (p->amplitudes - m.exact->amplitudes).norm() / m.exact->amplitudes.norm());
     };
-    const auto t = m.exact ? transition_at(integrated, m.exact->p, s.sweep_tolerance) : std::nullopt;
     const auto& best = m.exact ? m.exact : m.complete ? m.complete : m.frozen;
     out += fmt::format("{:<6} {:<7} {} {} {} {} {} {} {} {}  {}\n", m.kind, best->branch, number(m.exact.has_value(), m.exact ? m.exact->p : 0.0),
                        number(m.frozen.has_value(), m.frozen ? m.frozen->p : 0.0),
                        change(m.frozen && m.exact, m.frozen && m.exact ? m.frozen->p - m.exact->p : 0.0), error(m.frozen),
                        number(m.complete.has_value(), m.complete ? m.complete->p : 0.0),
                        change(m.complete && m.exact, m.complete && m.exact ? m.complete->p - m.exact->p : 0.0), error(m.complete),
-                       number(t.has_value(), t ? 0.5 * (t->before + t->after) : 0.0), m.words());
+                       number(transitions[row].has_value(), transitions[row].value_or(0.0)), m.words());
   }
   return out;
 }
@@ -379,7 +383,7 @@ ExitStatus run(const Configuration& c, RunContext& context) {
   write_integrated(file, source, s, integrated);
   const auto matches = match_points(levels);
   write_matches(file, source, s, matches, integrated);
-  if (!context.quiet) fmt::print(stderr, "{}", points_text(s, matches, integrated));
+  if (!context.quiet) fmt::print(stderr, "{}", points_text(matches, integrated));
   std::string words;
   if (!s.second_values.empty() && !interrupted) {
     const auto rows = map_errors(c, s, context);
