@@ -16,8 +16,9 @@ def figures(result):
 def panel_columns(result, names):
     """Amplitudes named in the study first; a column that is flat on every branch shows nothing."""
     branches = [result.group("branches").group(n) for n in names]
-    candidates = amplitude_columns(branches[0])
-    more = [c for c in branches[0].columns if branches[0].descriptions.get(c, "") in ("variable",) and c not in candidates]
+    x = parameter_of(result, branches[0])
+    candidates = [c for c in amplitude_columns(branches[0]) if c != x]
+    more = [c for c in branches[0].columns if branches[0].descriptions.get(c, "") == "variable" and c not in candidates]
     moving = [c for c in candidates + more if max(np.ptp(b.column(c)) for b in branches) > 1e-9]
     sums = [c for c in moving if "root of the sum" in branches[0].descriptions.get(c, "")]
     return (sums or moving or candidates)[:PANELS]
