@@ -46,7 +46,7 @@ Curve::Report Curve::correct(Out u, In normal, In anchor) {
   for (;;) {
     f_.linearise(u, r_, jacobian_);
     report.residual = r_.lpNorm<Eigen::Infinity>();
-    if (!std::isfinite(report.residual) || !jacobian_.allFinite()) return report;
+    if (!std::isfinite(report.residual)) return report;  // of the Jacobian: the step or the tangent is not finite then
     bordered_.topRows(n) = jacobian_;
     bordered_.row(n) = (normal.array() * weight_.array()).transpose();
     lu_.compute(bordered_);

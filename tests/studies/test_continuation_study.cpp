@@ -128,7 +128,7 @@ TEST_CASE("charts of systems given as expressions", "[continuation_study][publis
 
 TEST_CASE("isolas are found by deflation and told", "[continuation_study]") {
   const Folder f;
-  const std::string text = R"(study = "continuation"
+  const std::string text = R"toml(study = "continuation"
 [equilibrium_model]
 variables = ["x"]
 parameters = { mu = -1.0 }
@@ -137,7 +137,7 @@ initial = [0.0]
 [continuation]
 parameter = "mu"
 range = [-1.0, 1.0]
-)";
+)toml";
   CHECK(f.run_text(text).err.find("isola") == std::string::npos);
   const Ran r = f.run_text(text, "--json --set continuation.deflate_at=[0.0]");
   CHECK(r.status == 0);
