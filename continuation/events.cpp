@@ -294,10 +294,7 @@ std::unique_ptr<AugmentedSystem> EventFinder::torus_system(int group, const Samp
   const OrbitProblem& orbit = *curve_.orbit();
   const double kappa = torus_frequency(orbit, near.u, group);
   if (!(kappa > 0.0)) return nullptr;
-  Indices directions;
-  for (int i = 0; i < orbit.size(); ++i)
-    if (orbit.group_of_unknown(near.u, i) == group) directions.push_back(i);
-  return std::make_unique<TorusSystem>(orbit, curve_.blocks().indices[0], directions, near.u, kappa);
+  return std::make_unique<TorusSystem>(orbit, curve_.blocks().indices[0], unknowns_of_group(orbit, near.u, group), near.u, kappa);
 }
 
 // The event splits the step: signatures just before and behind it must show it, and what remains on either side is explained in turn.

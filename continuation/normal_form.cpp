@@ -2,7 +2,9 @@
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/LU>
-#include <Eigen/SVD>
+
+#include "continuation/null_vectors.hpp"
+#include "continuation/period_doubling.hpp"
 
 namespace whirl::continuation {
 namespace {
@@ -46,12 +48,6 @@ class Forms {
   Vector t_;
 };
 
-void null_vectors(const Matrix& a, Vector& v, Vector& w) {
-  const Eigen::JacobiSVD<Matrix> svd(a, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  v = svd.matrixV().col(a.cols() - 1);
-  w = svd.matrixU().col(a.rows() - 1);
-}
-
 // h with A h = rhs, made unique by v'h = 0; rhs must lie in the range of A.
 Vector solve_off_null(const Matrix& a, const Vector& v, const Vector& w, const Vector& rhs) {
   const auto n = a.rows();
@@ -62,15 +58,38 @@ Vector solve_off_null(const Matrix& a, const Vector& v, const Vector& w, const V
   return m.partialPivLu().solve(r).head(n);
 }
 
+void set_doubling_coefficient(const OrbitProblem& orbit, SpecialPoint& point) {
+  auto doubled = period_doubling_near(orbit, point.u, point.block);
+  if (!doubled) return;
+  set_normal_form(orbit.doubled(), *doubled);
+  point.coefficient = doubled->coefficient;
+  point.has_coefficient = doubled->has_coefficient;
+}
+
 }  // namespace
 
 std::string criticality(const SpecialPoint& point) {
   const bool pitchfork = point.type == EventType::branch_point && point.subtype != "TC" && (point.block > 0 || point.subtype == "PF");
-  if (!point.has_coefficient || !(pitchfork || point.type == EventType::hopf) || point.coefficient == 0.0) return "";
+  const bool branches_off = pitchfork || point.type == EventType::hopf || point.type == EventType::period_doubling;
+  if (!point.has_coefficient || !branches_off || point.coefficient == 0.0) return "";
   return point.coefficient < 0.0 ? "supercritical" : "subcritical";
 }
 
+double mass(const Problem& f, In u, const Vector& v, const Vector& w) {
+  const auto* orbit = dynamic_cast<const OrbitProblem*>(&f);
+  if (!orbit) return w.dot(v);
+  Matrix c(f.size(), f.size());
+  orbit->velocity(u, c);
+  return -w.dot(c * v);
+}
+
 void set_normal_form(const Problem& f, SpecialPoint& point, const Vector& sense) {
+  const auto* orbit = dynamic_cast<const OrbitProblem*>(&f);
+  if (orbit && point.type == EventType::period_doubling) return set_doubling_coefficient(*orbit, point);
+  set_normal_form(f, point, sense, [&](const Vector& v, const Vector& w) { return mass(f, point.u, v, w); });
+}
+
+void set_normal_form(const Problem& f, SpecialPoint& point, const Vector& sense, const Mass& mass_of) {
   const int n = f.size();
   if (f.derivatives() < 3) return;
   Matrix j(n, n + f.parameters());
@@ -101,14 +120,14 @@ void set_normal_form(const Problem& f, SpecialPoint& point, const Vector& sense)
   if (point.type != EventType::fold && point.type != EventType::branch_point) return;
   Vector v, w;
   null_vectors(a, v, w);
-  const double overlap = w.dot(v);
+  const double overlap = mass_of(v, w);
   if (std::abs(overlap) < 1e-10) return;  // a double zero: no coefficient
   const auto along = [&](In direction) { return direction.size() >= n && v.dot(direction.head(n)) < 0.0; };
   if (along(sense.size() > 0 ? sense : point.tangent)) {
     v = -v;
     w = -w;
   }
-  w /= w.dot(v);
+  w /= mass_of(v, w);
   if (point.type == EventType::fold) point.null_vector = v;
   const Vector bvv = forms.B(v, v);
   const double quadratic = 0.5 * w.dot(bvv);

@@ -132,6 +132,13 @@ Eigen::VectorXcd TorusSystem::null_vector(In y) const {
   return full.normalized();
 }
 
+Indices unknowns_of_group(const OrbitProblem& orbit, In u, int group) {
+  Indices found;
+  for (int i = 0; i < orbit.size(); ++i)
+    if (orbit.group_of_unknown(u, i) == group) found.push_back(i);
+  return found;
+}
+
 double torus_frequency(const OrbitProblem& orbit, In u, int group) {
   Eigen::VectorXcd mu(orbit.multiplier_count());
   Eigen::VectorXi groups(orbit.multiplier_count());

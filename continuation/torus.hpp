@@ -43,6 +43,9 @@ class TorusSystem : public AugmentedSystem {
   mutable Vector full_;
 };
 
+/// The unknowns of a group of directions at u.
+Indices unknowns_of_group(const OrbitProblem& orbit, In u, int group);
+
 /// Exponent i kappa of the pair of complex multipliers nearest the unit circle in `group` at u; 0 if the group has no such pair.
 double torus_frequency(const OrbitProblem& orbit, In u, int group);
 

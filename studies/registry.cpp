@@ -2,14 +2,26 @@
 
 #include <fmt/format.h>
 
+#include "studies/basins_study.hpp"
 #include "studies/continuation_study.hpp"
+#include "studies/integrate_study.hpp"
+#include "studies/periodic_study.hpp"
+#include "studies/slow_flow_study.hpp"
 #include "studies/superharmonic_study.hpp"
 #include "studies/two_parameter_study.hpp"
 
 namespace whirl::studies {
 
 const std::vector<StudyKind>& study_kinds() {
-  static const std::vector<StudyKind> kinds = {superharmonic_study(), continuation_study(), two_parameter_study()};
+  static const std::vector<StudyKind> kinds = {
+      superharmonic_study(),
+      continuation_study(),
+      two_parameter_study(),
+      periodic_study(),
+      slow_flow_study(),
+      integrate_study(),
+      basins_study(),
+  };
   return kinds;
 }
 

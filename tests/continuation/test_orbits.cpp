@@ -4,6 +4,7 @@
 
 #include "continuation/orbit_network.hpp"
 #include "continuation/torus.hpp"
+#include "continuation/two_parameter.hpp"
 #include "core/newton.hpp"
 #include "models/harmonic_balance.hpp"
 #include "tests/models/oresund.hpp"
@@ -40,7 +41,7 @@ void compare(const Network& net, const std::vector<Expected>& expected) {
       CHECK(b.name == e.branch);
       CHECK(to_string(s.type) == e.type);
       CHECK(s.subtype == e.subtype);
-      CHECK(s.u[s.u.size() - 1] == Approx(e.omega).margin(6e-11));  // the last digit of the references
+      CHECK(s.u[s.u.size() - 1] == Approx(e.omega).epsilon(0).margin(6e-11));  // the last digit of the references
       CHECK(s.unstable_before == e.before);
       CHECK(s.unstable_after == e.after);
       CHECK(s.residual < 1e-12);
@@ -95,8 +96,8 @@ TEST_CASE("orbits: two doublings 0.003 rad/s apart are told apart by their direc
   CHECK(to_string(b.special[1].type) == std::string("PD"));
   CHECK(b.special[0].block == 0);  // in plane
   CHECK(b.special[1].block == 1);  // out of plane
-  CHECK(b.special[0].u[hb.size()] == Approx(2.0896029917).margin(1e-9));
-  CHECK(b.special[1].u[hb.size()] == Approx(2.09239906453).margin(1e-9));
+  CHECK(b.special[0].u[hb.size()] == Approx(2.0896029917).epsilon(0).margin(1e-9));
+  CHECK(b.special[1].u[hb.size()] == Approx(2.09239906453).epsilon(0).margin(1e-9));
 }
 
 TEST_CASE("orbits: the multipliers at a torus point stand on the unit circle at the angle of its frequency") {
@@ -139,5 +140,106 @@ TEST_CASE("orbits: Jacobian of the torus system against differences") {
     system.residual(down, rd);
     CHECK((j.col(c) - (ru - rd) / (2.0 * h)).lpNorm<Eigen::Infinity>() <
           1e-6 * (1.0 + j.col(c).lpNorm<Eigen::Infinity>()));  // differences hold 7 digits
+  }
+}
+
+TEST_CASE("orbits: thresholds in (omega, U) of whirling, folds and both period doublings", "[published]") {
+  const HarmonicBalance hb = stay_harmonic_balance(oresund(), {Lens("omega")}, {.harmonics = 16});
+  const HarmonicBalance hb2 = stay_harmonic_balance(oresund(), {Lens("omega"), Lens("support_motion.amplitude")}, {.harmonics = 16});
+  const OrbitNetwork net = whole(hb, 1.2, 2.3, 0);
+  TwoParameterOptions o;
+  o.range1[0] = 1.2;
+  o.range1[1] = 2.3;
+  o.range2[0] = 0.1;
+  o.range2[1] = 0.52;
+  const auto least = [&](EventType type, double near) -> CodimensionTwo {
+    for (const auto& s : net.network(0).branches()[0].special) {
+      if (s.type != type || std::abs(s.u[hb.size()] - near) > 1e-3) continue;
+      const DefiningCurve curve = follow(hb2, s, 0.5, o);
+      CHECK(curve.type == type);
+      for (const auto& z : curve.special)
+        if (z.type == "MIN") return z;
+    }
+    return {};
+  };
+  // Quoted values come from a parabola through points of the curve (see below): they lie up to 2.2e-5 rad/s beside the minimum and so above it.
+  struct Row {
+    EventType type;
+    double near, omega, U, quoted_omega, quoted_U, multiplier;
+  };
+  for (const Row& row : {Row{EventType::branch_point, 1.581, 1.6003560996, 0.318111203383, 1.6003780, 0.318111237, 1.0},
+                         Row{EventType::fold, 1.9824, 1.6255230, 0.165257300, 1.6255230, 0.165257300, 1.0},
+                         Row{EventType::period_doubling, 1.9984, 2.0694014157, 0.3769875115, 2.0693798, 0.376987576, -1.0},
+                         Row{EventType::period_doubling, 2.0896, 2.1301191312, 0.389172376, 2.1301219, 0.389172376, -1.0}}) {
+    const CodimensionTwo z = least(row.type, row.near);
+    INFO(to_string(row.type) << " from " << row.near);
+    REQUIRE(z.u.size() > 0);
+    const double U = z.u[z.u.size() - 1], omega = z.u[z.u.size() - 2];
+    CHECK(U == Approx(row.U).epsilon(0).margin(1e-9));
+    CHECK(omega == Approx(row.omega).epsilon(0).margin(1e-7));  // at a minimum omega is known to the root of U's rounding
+    CHECK(omega == Approx(row.quoted_omega).epsilon(0).margin(2.3e-5));
+    CHECK(U <= row.quoted_U + 5e-10);
+    const bool doubled = row.type == EventType::period_doubling;
+    const HarmonicBalance& own = doubled ? dynamic_cast<const HarmonicBalance&>(hb2.doubled()) : hb2;
+    const Vector u = doubled ? hb2.from_doubled(z.u) : z.u;
+    REQUIRE(z.u.size() == own.size() + 2);
+    const IntegratedOrbit integrated = periodic_by_integration(hb2.system_at(u), hb2.state_at(u, 0.0), 1);
+    double nearest = 1.0;
+    for (const auto& mu : Eigen::VectorXcd(integrated.monodromy.eigenvalues())) nearest = std::min(nearest, std::abs(mu - row.multiplier));
+    CHECK(nearest < (row.type == EventType::fold ? 1e-5 : 1e-8));  // the multiplier of a fold moves with the root of the distance
+  }
+}
+
+TEST_CASE("orbits: the least whirling amplitude, its curve solved for U at held omega and its multipliers integrated") {
+  // A value of 0.318111237 m at 1.6003780 rad/s is in circulation: it is the curve at the vertex of a parabola through three points 1e-3 rad/s apart.
+  // The vertex tends to our minimum with the square of that distance, and the multiplier integrated there is 1.
+  const HarmonicBalance hb = stay_harmonic_balance(oresund(), {Lens("support_motion.amplitude"), Lens("omega")}, {.harmonics = 16});
+  const int n = hb.size();
+  const NewtonResult orbit = newton(hb, hb.linear_response(point({0.318, 1.6})));
+  REQUIRE(orbit.ok());
+  const Blocks blocks = make_blocks(hb, active_reflections(hb, orbit.x.head(n)));
+  const auto threshold = [&](double omega) -> Vector {
+    Vector u = orbit.x;
+    u[n + 1] = omega;
+    SingularSystem system(hb, blocks.indices[0], blocks.indices[1], u);
+    return system.base_point(newton(system, system.unknowns(u), {.tolerance = 1e-13}).x);
+  };
+  const double ours = 1.6003560996, least = threshold(ours)[n];
+  CHECK(least == Approx(0.318111203383).epsilon(0).margin(2e-12));
+  CHECK(threshold(1.6003780)[n] == Approx(0.318111237).epsilon(0).margin(5e-10));  // the quoted pair lies on the curve
+  const auto vertex = [&](double h) {
+    const double left = threshold(ours - h)[n], right = threshold(ours + h)[n];
+    return -0.5 * h * (right - left) / (left - 2.0 * least + right);
+  };
+  CHECK(vertex(1e-3) == Approx(1.6003780 - ours).epsilon(0).margin(1e-7));
+  CHECK(vertex(1e-4) == Approx(vertex(1e-3) / 100.0).epsilon(0.01));
+  const Vector u = threshold(ours);
+  const IntegratedOrbit integrated = periodic_by_integration(hb.system_at(u), hb.state_at(u, 0.0), 1);
+  REQUIRE(integrated.ok);
+  double nearest = 1.0;
+  for (const auto& mu : Vector(integrated.monodromy.eigenvalues().real())) nearest = std::min(nearest, std::abs(mu - 1.0));
+  CHECK(nearest < 1e-10);  // CVODE at 1e-13 over a period
+}
+
+TEST_CASE("orbits: a curve of torus points in (omega, damping)") {
+  const HarmonicBalance hb = stay_harmonic_balance(oresund(), {Lens("omega")}, {.harmonics = 14});
+  const HarmonicBalance hb2 = stay_harmonic_balance(oresund(), {Lens("omega"), Lens("damping")}, {.harmonics = 14});
+  const OrbitNetwork net = whole(hb, 1.5, 1.9, 0);
+  TwoParameterOptions o;
+  o.range1[0] = 1.5;
+  o.range1[1] = 1.9;
+  o.range2[0] = 0.009;
+  o.range2[1] = 0.012;
+  for (const auto& s : net.network(0).branches().at(1).special) {
+    if (s.type != EventType::torus) continue;
+    const DefiningCurve curve = follow(hb2, s, 0.01, o);
+    REQUIRE(curve.u.cols() > 5);
+    for (Eigen::Index i = 0; i < curve.u.cols(); i += 5) {
+      const Vector u = curve.u.col(i);
+      double nearest = 1.0;
+      for (const auto& mu : hb2.floquet(u).multipliers)
+        nearest = std::min(nearest, std::abs(mu - std::polar(1.0, curve.frequency[i] * 6.283185307179586 / u[hb.size()])));
+      CHECK(nearest < 1e-7);  // 14 harmonics
+    }
   }
 }
