@@ -4,6 +4,8 @@
 #include <Eigen/QR>
 #include <Eigen/SVD>
 
+#include "continuation/null_vectors.hpp"
+
 namespace whirl::continuation {
 namespace {
 
@@ -21,8 +23,8 @@ void embed(In v, const Indices& block, Vector& full) {
   for (std::size_t i = 0; i < block.size(); ++i) full[block[i]] = v[static_cast<int>(i)];
 }
 
-// Directions b, c of unit length (a zero behind them) that A, nearly singular, almost annihilates from the left and from the right. Borders with
-// which [A b; c' 0] is well conditioned: two rounds of solving with the borders so far, else singular vectors.
+// Small A: directions b, c of unit length (a zero behind them) that A, nearly singular, almost annihilates from the left and from the right. Borders
+// with which [A b; c' 0] is well conditioned: two rounds of solving with the borders so far, else singular vectors.
 void null_directions(const Matrix& a, Vector& b, Vector& c) {
   const int m = static_cast<int>(a.rows());
   Matrix bordered(m + 1, m + 1);
@@ -124,7 +126,14 @@ void SingularSystem::update_borders(In y) {
   base_.jacobian(u_, j_);
   const int m = static_cast<int>(block_.size());
   Vector b = Vector::Zero(m + 1), c = b;
-  null_directions(block_of(j_, block_), b, c);
+  if (m < DenseLu::small) {
+    null_directions(block_of(j_, block_), b, c);
+  } else {
+    Vector right, left;
+    null_vectors(block_of(j_, block_), right, left);
+    b.head(m) = left;
+    c.head(m) = right;
+  }
   // Null vectors come with any sign; keep it along a curve, so that test functions do not jump.
   b_ = b.dot(b_) < 0.0 ? Vector(-b) : b;
   c_ = c.dot(c_) < 0.0 ? Vector(-c) : c;
