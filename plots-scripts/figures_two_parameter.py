@@ -238,7 +238,7 @@ def chart_keys(curves, points, symbol, unit, study_value):
         drawn = {line for c in curves if c.kind == kind for line, _, _ in c.pieces()}
         for line in lines:
             if line in drawn:
-                which = {"solid": ", supercritical", "dotted": ", subcritical"}.get(line, "")
+                which = {"solid": ", supercritical", "dotted": ", subcritical"}.get(line, "") if len(lines) > 1 else ""
                 keys.append(line_key(words + which, color=colour, **LINES[line]))
     for kind, (marker, size, words) in POINTS.items():
         if any(p.kind == kind for p in points):
