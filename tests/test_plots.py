@@ -136,6 +136,28 @@ def two_parameter(path):
             "support_motion.amplitude": [0.305, 0.3, 0.4, 0.4, 0.5088, 0.5088], "residual": [0.0] * 6})
 
 
+def continuation(path):
+    """Rest points of a pitchfork in (x, y) with an isola in x alone; mu varies, lambda is fixed."""
+    with h5py.File(path, "w") as file:
+        file.require_group("study").attrs.update({"kind": "continuation", "outcome": "complete", "continuation.parameter": "mu"})
+        table(file, "/model/parameters", {"mu": [0.5], "lambda": [1.25]})
+        for name in ("mu", "lambda"):
+            del file[f"model/parameters/{name}"]
+            file[f"model/parameters/{name}"] = 1.25
+        mu, angle = np.linspace(-1, 1, 21), np.linspace(0, 2 * np.pi, 30)
+        for name, p, x, unstable in (("B1", mu, 0 * mu, mu > 0), ("B2", mu[10:], np.sqrt(mu[10:]), mu[10:] < 0),
+                                     ("B3", 0.3 * np.cos(angle), 2 + 0.4 * np.sin(angle), np.sin(angle) < 0)):
+            group = table(file, f"/branches/{name}", {"mu": p, "x": x, "y": 0 * x, "n_unstable": unstable,
+                                                      "arclength": np.arange(len(p), dtype=float)}, units="-")
+            group["mu"].attrs["description"] = "continuation parameter"
+            for column in ("x", "y"):
+                group[column].attrs["description"] = "variable"
+            group.attrs["isola"] = float(name == "B3")
+        table(file, "/special_points", {"branch": ["B1", "B3"], "label": ["BP1", "LP1"], "type": ["BP", "LP"], "subtype": ["PF", ""],
+                                        "mu": [0.0, 0.3], "x": [0.0, 2.0], "y": [0.0, 0.0], "arclength": [10.0, 0.0],
+                                        "unstable_before": [0, 0], "unstable_after": [1, 1]}, units="-")
+
+
 def slow_flow(path):
     """In plane from 1.9 to 2.2 rad/s; a coupled motion of period 2T from 1.95 on; settled motions of both kinds at 2.1."""
     with h5py.File(path, "w") as file:
@@ -365,6 +387,22 @@ def test_other_kind_gets_bifurcation_diagram(folder):
     done = plot(path, "--format", "png")
     check(done.returncode == 0 and os.listdir(folder).count("other-branches.png") == 1, done.stderr)
     check_picture(os.path.join(folder, "other-branches.png"))
+
+
+def test_continuation_diagram(folder):
+    """A variable that never moves gets no panel; isolas and fixed parameters stand in the caption."""
+    from figures_continuation import panel_columns, words
+    from figures_common import study_words
+    from result_file import read
+    path = os.path.join(folder, "rest.h5")
+    continuation(path)
+    done = plot(path, "--format", "png")
+    check(done.returncode == 0 and done.stderr == "" and os.listdir(folder).count("rest-branches.png") == 1, done.stderr)
+    check_picture(os.path.join(folder, "rest-branches.png"))
+    result, names = read(path), ["B1", "B2", "B3"]
+    check(panel_columns(result, names) == ["x"], str(panel_columns(result, names)))
+    caption = study_words(result, words(result, names)).replace("\u00a0", " ")
+    check(caption == "3 branches (B3 isola), lambda = 1.25", caption)
 
 
 def test_stability_segments(folder):
