@@ -1,0 +1,76 @@
+#pragma once
+/// Displacements and forces along the cable as Legendre series in x: known at any point, not only where they were computed.
+///
+/// In plane the columns are U, V, N, T; N/c is the change of slope. Out of plane they are W, W_x. Real for modes, complex for damped modes and
+/// forced motion. Units as in galerkin.hpp: displacements in a, forces in H.
+///
+///     Field<double> f = ...;
+///     auto v = f.at(x, Column::V);                 // x between f.x1 and f.x2
+
+#include "models/catenary/galerkin.hpp"
+
+namespace whirl::models::catenary {
+
+enum class Column { U = 0, V = 1, N = 2, T = 3, W = 0, W_slope = 1 };
+
+template <class S>
+using ColumnVector = Eigen::Matrix<S, Eigen::Dynamic, 1>;
+
+template <class S>
+struct Field {
+  double x1 = 0.0, x2 = 0.0;
+  Eigen::Matrix<S, Eigen::Dynamic, Eigen::Dynamic> coefficients;  ///< Legendre coefficients, one column a quantity
+
+  ColumnVector<S> at(In x, Column column) const { return table(x).template cast<S>() * coefficients.col(static_cast<int>(column)); }
+  /// All columns at the points x.
+  Eigen::Matrix<S, Eigen::Dynamic, Eigen::Dynamic> at(In x) const { return table(x).template cast<S>() * coefficients; }
+  S at(double x, Column column) const { return at(Vector::Constant(1, x), column)[0]; }
+
+ private:
+  Matrix table(In x) const { return legendre_values(((2.0 * x.array() - x1 - x2) / (x2 - x1)).matrix(), static_cast<int>(coefficients.rows())); }
+};
+
+/// The field behind U, V, N at the mesh points. The tension follows from the balance along the cable, its constant from the balance across:
+///
+///     T_x = L1 c U + N/c,     int [N p_x + (L2 c V - T/c) p] dx = 0 with p = phi_0
+///
+/// so that it is as accurate for an inextensible cable, whose tension is a reaction.
+template <class S>
+Field<S> field_of(const Mesh& mesh, const InPlaneGalerkin::Nodal<S>& at, S L1, S L2) {
+  const auto n = mesh.t.size();
+  Field<S> f{mesh.x1, mesh.x2, {}};
+  f.coefficients.setZero(n, 4);
+  f.coefficients.col(0) = mesh.template project<S>(at.U);
+  f.coefficients.col(1) = mesh.template project<S>(at.V);
+  f.coefficients.col(2) = mesh.template project<S>(at.N);
+  const ColumnVector<S> slope = L1 * mesh.c.cwiseProduct(at.U) + at.N.cwiseQuotient(mesh.c.template cast<S>());
+  const ColumnVector<S> a = mesh.template project<S>(slope);
+  ColumnVector<S> T = ColumnVector<S>::Zero(n);
+  for (Eigen::Index k = 0; k + 1 < n; ++k) {  // m int P_k = m (P_{k+1} - P_{k-1}) / (2 k + 1)
+    const S part = mesh.m * a[k] / (2.0 * static_cast<double>(k) + 1.0);
+    T[k + 1] += part;
+    T[k == 0 ? 0 : k - 1] += k == 0 ? part : -part;
+  }
+  const Vector p = 1.0 - mesh.t.array().square(), px = -2.0 / mesh.m * mesh.t;
+  const ColumnVector<S> T_at = mesh.legendre.leftCols(n).template cast<S>() * T;
+  const Vector p_over_c = mesh.weight.cwiseProduct(p).cwiseQuotient(mesh.c);
+  const Vector pc = mesh.weight.cwiseProduct(p).cwiseProduct(mesh.c), wpx = mesh.weight.cwiseProduct(px);
+  const S across = L2 * (pc.template cast<S>().transpose() * at.V)(0) + (wpx.template cast<S>().transpose() * at.N)(0);
+  T[0] += (across - (p_over_c.template cast<S>().transpose() * T_at)(0)) / p_over_c.sum();
+  f.coefficients.col(3) = T;
+  return f;
+}
+
+/// Share of int V^2 dx in the part of a column that is odd about the middle of [x1, x2]: 0 symmetric, 1 antisymmetric.
+template <class S>
+double odd_share(const Field<S>& f, Column column) {
+  double odd = 0.0, all = 0.0;
+  for (Eigen::Index k = 0; k < f.coefficients.rows(); ++k) {
+    const double part = std::norm(std::complex<double>(f.coefficients(k, static_cast<int>(column)))) / (2.0 * static_cast<double>(k) + 1.0);
+    all += part;
+    if (k % 2 == 1) odd += part;
+  }
+  return all > 0.0 ? odd / all : 0.0;
+}
+
+}  // namespace whirl::models::catenary
