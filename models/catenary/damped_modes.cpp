@@ -68,7 +68,7 @@ struct QuadraticProblem {
   }
 };
 
-DampedMode mode_of(const InPlaneGalerkin& g, const CoreCable& c, Complex lambda, const ComplexVector& q) {
+DampedMode mode_of(const InPlaneGalerkin& g, const Mirror& mirror, const CoreCable& c, Complex lambda, const ComplexVector& q) {
   auto at = g.nodal<Complex>(c.kappa, q, Eigen::Vector4cd::Zero());
   const Eigen::VectorXd size = at.U.cwiseAbs2() + at.V.cwiseAbs2();
   Eigen::Index i;
@@ -77,7 +77,7 @@ DampedMode mode_of(const InPlaneGalerkin& g, const CoreCable& c, Complex lambda,
   const Complex scale = std::conj(lead) / std::abs(lead) / std::sqrt(size[i]);
   for (ComplexVector* v : {&at.U, &at.V, &at.N}) *v *= scale;
   DampedMode mode{lambda, 0.0, field_of<Complex>(g.mesh(), at, lambda * lambda + c.eta1 * lambda, lambda * lambda + c.eta2 * lambda)};
-  mode.odd_share = odd_share(mode.field, Column::V);
+  mode.odd_share = mirror.odd_share(mode.field, Column::V);
   return mode;
 }
 
@@ -98,6 +98,7 @@ DampedSet damped_modes(const CoreCable& c, const ModeOptions& o) {
   out.resolved = set.resolved;
   const InPlaneGalerkin g(c.x1, c.x2, set.functions);
   const QuadraticProblem problem{g.stiffness(c.kappa), g.mass(c.kappa, c.eta1, c.eta2), g.mass(c.kappa)};
+  const Mirror mirror(g.mesh());
   std::vector<Complex> oscillating;
   for (const Complex lambda : problem.roots())
     if (lambda.imag() > 1e-9 * std::abs(lambda)) oscillating.push_back(lambda);
@@ -107,7 +108,7 @@ DampedSet damped_modes(const CoreCable& c, const ModeOptions& o) {
   if (oscillating.size() > std::size_t(o.count)) oscillating.resize(std::size_t(o.count));
   for (Complex lambda : oscillating) {
     const ComplexVector q = problem.polish(lambda);
-    if (o.shapes) out.modes.push_back(mode_of(g, c, lambda, q));
+    if (o.shapes) out.modes.push_back(mode_of(g, mirror, c, lambda, q));
     else out.modes.push_back({lambda, 0.0, {}});
   }
   return out;

@@ -61,16 +61,27 @@ Field<S> field_of(const Mesh& mesh, const InPlaneGalerkin::Nodal<S>& at, S L1, S
   return f;
 }
 
-/// Share of int V^2 dx in the part of a column that is odd about the middle of [x1, x2]: 0 symmetric, 1 antisymmetric.
-template <class S>
-double odd_share(const Field<S>& f, Column column) {
-  double odd = 0.0, all = 0.0;
-  for (Eigen::Index k = 0; k < f.coefficients.rows(); ++k) {
-    const double part = std::norm(std::complex<double>(f.coefficients(k, static_cast<int>(column)))) / (2.0 * static_cast<double>(k) + 1.0);
-    all += part;
-    if (k % 2 == 1) odd += part;
+/// Parity of a motion on a cable that is not symmetric itself, told in the travel time of a transverse wave, tau = int sqrt(cosh x) dx, with the
+/// amplitude such a wave keeps, V (cosh x)^(1/4): short waves are symmetric or antisymmetric about the middle in tau on any cable.
+class Mirror {
+ public:
+  explicit Mirror(const Mesh& mesh);
+  /// Share of int sqrt(c) V^2 dtau in the odd part: 0 symmetric, 1 antisymmetric.
+  template <class S>
+  double odd_share(const Field<S>& f, Column column) const {
+    const ColumnVector<S> v = legendre_.leftCols(f.coefficients.rows()).template cast<S>() * f.coefficients.col(static_cast<int>(column));
+    double odd = 0.0, all = 0.0;
+    for (Eigen::Index i = 0; i < v.size(); ++i) {
+      const S here = amplitude_[i] * v[i], there = amplitude_[v.size() - 1 - i] * v[v.size() - 1 - i];
+      odd += weight_[i] * std::norm(std::complex<double>(0.5 * (here - there)));
+      all += weight_[i] * std::norm(std::complex<double>(here));
+    }
+    return all > 0.0 ? odd / all : 0.0;
   }
-  return all > 0.0 ? odd / all : 0.0;
-}
+
+ private:
+  Vector weight_, amplitude_;
+  Matrix legendre_;
+};
 
 }  // namespace whirl::models::catenary

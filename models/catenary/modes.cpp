@@ -106,14 +106,14 @@ double scale_of(const Vector& first, const Vector& second) {
   return (second[i] < 0.0 ? -1.0 : 1.0) / largest;
 }
 
-Mode in_plane_mode(const InPlaneGalerkin& g, double kappa, double omega, const Vector& q) {
+Mode in_plane_mode(const InPlaneGalerkin& g, const Mirror& mirror, double kappa, double omega, const Vector& q) {
   Mode mode;
   auto at = g.nodal<double>(kappa, q, Eigen::Vector4d::Zero());
   const double scale = scale_of(at.U, at.V);
   for (Vector* v : {&at.U, &at.V, &at.N}) *v *= scale;
   mode.omega = omega;
   mode.field = field_of<double>(g.mesh(), at, -omega * omega, -omega * omega);
-  mode.odd_share = odd_share(mode.field, Column::V);
+  mode.odd_share = mirror.odd_share(mode.field, Column::V);
   mode.kind = kind_of(mode.odd_share);
   const Vector w = g.mesh().weight.cwiseProduct(g.mesh().c);
   mode.modal_mass = w.dot(at.U.cwiseAbs2()) + w.dot(at.V.cwiseAbs2());
@@ -121,7 +121,7 @@ Mode in_plane_mode(const InPlaneGalerkin& g, double kappa, double omega, const V
   return mode;
 }
 
-Mode lateral_mode(const LateralGalerkin& g, double omega, const Vector& q) {
+Mode lateral_mode(const LateralGalerkin& g, const Mirror& mirror, double omega, const Vector& q) {
   Mode mode;
   Vector W = g.W().leftCols(g.size()) * q, slope = g.W_slope().leftCols(g.size()) * q;
   const double scale = scale_of(Vector::Zero(W.size()), W);
@@ -131,7 +131,7 @@ Mode lateral_mode(const LateralGalerkin& g, double omega, const Vector& q) {
   mode.field = {g.mesh().x1, g.mesh().x2, Matrix(W.size(), 2)};
   mode.field.coefficients.col(0) = g.mesh().project<double>(W);
   mode.field.coefficients.col(1) = g.mesh().project<double>(slope);
-  mode.odd_share = odd_share(mode.field, Column::W);
+  mode.odd_share = mirror.odd_share(mode.field, Column::W);
   mode.kind = kind_of(mode.odd_share);
   mode.modal_mass = g.mesh().weight.cwiseProduct(g.mesh().c).dot(W.cwiseAbs2());
   return mode;
@@ -184,8 +184,10 @@ ModeSet in_plane_modes(const CoreCable& c, const ModeOptions& o) {
       const Pencil even = make(Parity::symmetric), odd = make(Parity::antisymmetric);
       return frequencies_below(even.K, even.M, omega) + frequencies_below(odd.K, odd.M, omega);
     });
+  std::optional<Mirror> mirror;
+  if (o.shapes) mirror.emplace(g->mesh());
   for (Eigen::Index j = 0; j < std::min<Eigen::Index>(o.count, s.omega.size()); ++j)
-    if (o.shapes) set.modes.push_back(in_plane_mode(*g, c.kappa, s.omega[j], s.q.col(j)));
+    if (o.shapes) set.modes.push_back(in_plane_mode(*g, *mirror, c.kappa, s.omega[j], s.q.col(j)));
     else set.modes.emplace_back().omega = s.omega[j];
   return set;
 }
@@ -210,8 +212,10 @@ ModeSet out_of_plane_modes(const CoreCable& c, const ModeOptions& o) {
       const LateralGalerkin fine(c.x1, c.x2, set.functions + finer);
       return frequencies_below(fine.stiffness(), fine.mass(), omega);
     });
+  std::optional<Mirror> mirror;
+  if (o.shapes) mirror.emplace(g->mesh());
   for (Eigen::Index j = 0; j < std::min<Eigen::Index>(o.count, s.omega.size()); ++j)
-    if (o.shapes) set.modes.push_back(lateral_mode(*g, s.omega[j], s.q.col(j)));
+    if (o.shapes) set.modes.push_back(lateral_mode(*g, *mirror, s.omega[j], s.q.col(j)));
     else set.modes.emplace_back().omega = s.omega[j];
   return set;
 }

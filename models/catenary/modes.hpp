@@ -41,7 +41,7 @@ struct ModeOptions {
 
 struct Mode {
   double omega = 0.0;
-  double odd_share = 0.0;  ///< of int V^2 dx (W out of plane)
+  double odd_share = 0.0;  ///< of V (W out of plane), in the sense of `Mirror`
   ModeKind kind = ModeKind::symmetric;
   double elastic_share = 0.0;  ///< of the potential energy that is in stretching
   double modal_mass = 0.0;     ///< int (U^2 + V^2) c dx at the scale of the field [mu a]
