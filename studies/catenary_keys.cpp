@@ -10,13 +10,13 @@ using namespace models::catenary;
 
 namespace {
 
-struct Quantity {
+struct GeometryKey {
   const char *key, *noun, *unit, *description;
   std::optional<double> GeometryInput::*member;
   std::optional<double> example;
 };
 
-const Quantity quantities[] = {
+const GeometryKey quantities[] = {
     {"cable.span", "span", "m", "b, horizontal distance between the supports", &GeometryInput::span, 100.0},
     {"cable.height_difference", "height difference", "m", "h, upper support above the lower one", &GeometryInput::height, 0.0},
     {"cable.length", "length", "m", "l, length of the hanging cable", &GeometryInput::length, 117.6},
@@ -31,7 +31,7 @@ const Quantity quantities[] = {
 std::string culprit(const Configuration& c, const std::string& message) {
   std::size_t first = std::string::npos;
   std::string key;
-  for (const Quantity& q : quantities) {
+  for (const GeometryKey& q : quantities) {
     if (!c.has(q.key)) continue;
     if (key.empty()) key = q.key;
     if (const auto at = message.find(q.noun); at < first) {
@@ -45,11 +45,12 @@ std::string culprit(const Configuration& c, const std::string& message) {
 }  // namespace
 
 void add_hanging_cable_keys(Schema& s, bool drag) {
-  for (const Quantity& q : quantities)
+  for (const GeometryKey& q : quantities)
     s.add({.name = q.key,
            .unit = q.unit,
            .description = fmt::format("{}; three of span, height_difference, length, sag and a tension are given", q.description),
            .optional = true,
+           .suggested = q.example.has_value(),
            .lower = 0.0,
            .closed_lower = q.member == &GeometryInput::height,
            .example = q.example ? std::optional<Value>(*q.example) : std::nullopt});
@@ -80,7 +81,7 @@ HangingCable hanging_cable_of(const Configuration& c) {
   GeometryInput in;
   std::string given;
   int count = 0;
-  for (const Quantity& q : quantities)
+  for (const GeometryKey& q : quantities)
     if (c.has(q.key)) {
       in.*q.member = c.number(q.key);
       given = q.key;

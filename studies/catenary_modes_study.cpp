@@ -86,12 +86,13 @@ Found find(const CoreCable& core, int count, bool lateral) {
 }
 
 std::vector<Column> mode_columns(const Found& found, double unit) {
-  std::vector<Column> t{{"mode", "-", "number", {}},
-                        {"omega", "rad/s", "natural frequency without drag", {}},
-                        {"frequency", "Hz", "omega / 2 pi", {}},
-                        {"omega_ratio", "-", "omega / sqrt(g/a)", {}},
-                        {"odd_share", "-", "share of the normal (lateral) displacement squared that is odd about the middle, in travel time of a wave", {}},
-                        {"elastic_share", "-", "share of the potential energy in stretching", {}}};
+  std::vector<Column> t{
+      {"mode", "-", "number", {}},
+      {"omega", "rad/s", "natural frequency without drag", {}},
+      {"frequency", "Hz", "omega / 2 pi", {}},
+      {"omega_ratio", "-", "omega / sqrt(g/a)", {}},
+      {"odd_share", "-", "share of the normal (lateral) displacement squared that is odd about the middle, in travel time of a wave", {}},
+      {"elastic_share", "-", "share of the potential energy in stretching", {}}};
   for (std::size_t i = 0; i < found.set.modes.size(); ++i) {
     const Mode& mode = found.set.modes[i];
     const double values[] = {double(i + 1), mode.omega * unit, mode.omega * unit / (2.0 * std::numbers::pi),

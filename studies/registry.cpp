@@ -2,14 +2,17 @@
 
 #include <fmt/format.h>
 
+#include "studies/catenary_forced_study.hpp"
 #include "studies/catenary_modes_study.hpp"
 #include "studies/superharmonic_study.hpp"
 #include "studies/two_parameter_study.hpp"
+#include "studies/veering_study.hpp"
 
 namespace whirl::studies {
 
 const std::vector<StudyKind>& study_kinds() {
-  static const std::vector<StudyKind> kinds = {superharmonic_study(), two_parameter_study(), catenary_modes_study()};
+  static const std::vector<StudyKind> kinds = {superharmonic_study(), two_parameter_study(), catenary_modes_study(), catenary_forced_study(),
+                                               veering_study()};
   return kinds;
 }
 

@@ -77,7 +77,7 @@ DampedMode mode_of(const InPlaneGalerkin& g, const Mirror& mirror, const CoreCab
   const Complex scale = std::conj(lead) / std::abs(lead) / std::sqrt(size[i]);
   for (ComplexVector* v : {&at.U, &at.V, &at.N}) *v *= scale;
   DampedMode mode{lambda, 0.0, field_of<Complex>(g.mesh(), at, lambda * lambda + c.eta1 * lambda, lambda * lambda + c.eta2 * lambda)};
-  mode.odd_share = mirror.odd_share(mode.field, Column::V);
+  mode.odd_share = mirror.odd_share(mode.field, Quantity::V);
   return mode;
 }
 

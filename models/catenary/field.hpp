@@ -5,13 +5,13 @@
 /// forced motion. Units as in galerkin.hpp: displacements in a, forces in H.
 ///
 ///     Field<double> f = ...;
-///     auto v = f.at(x, Column::V);                 // x between f.x1 and f.x2
+///     auto v = f.at(x, Quantity::V);                 // x between f.x1 and f.x2
 
 #include "models/catenary/galerkin.hpp"
 
 namespace whirl::models::catenary {
 
-enum class Column { U = 0, V = 1, N = 2, T = 3, W = 0, W_slope = 1 };
+enum class Quantity { U = 0, V = 1, N = 2, T = 3, W = 0, W_slope = 1 };
 
 template <class S>
 using ColumnVector = Eigen::Matrix<S, Eigen::Dynamic, 1>;
@@ -21,10 +21,22 @@ struct Field {
   double x1 = 0.0, x2 = 0.0;
   Eigen::Matrix<S, Eigen::Dynamic, Eigen::Dynamic> coefficients;  ///< Legendre coefficients, one column a quantity
 
-  ColumnVector<S> at(In x, Column column) const { return table(x).template cast<S>() * coefficients.col(static_cast<int>(column)); }
+  ColumnVector<S> at(In x, Quantity quantity) const { return table(x).template cast<S>() * coefficients.col(static_cast<int>(quantity)); }
   /// All columns at the points x.
   Eigen::Matrix<S, Eigen::Dynamic, Eigen::Dynamic> at(In x) const { return table(x).template cast<S>() * coefficients; }
-  S at(double x, Column column) const { return at(Vector::Constant(1, x), column)[0]; }
+  /// One point, by Clenshaw's recurrence: nothing is allocated.
+  S at(double x, Quantity quantity) const {
+    const double t = (2.0 * x - x1 - x2) / (x2 - x1);
+    const auto a = coefficients.col(static_cast<int>(quantity));
+    S b1(0.0), b2(0.0);
+    for (Eigen::Index k = a.size() - 1; k > 0; --k) {
+      const double n = static_cast<double>(k);
+      const S b = a[k] + ((2.0 * n + 1.0) / (n + 1.0) * t) * b1 - ((n + 1.0) / (n + 2.0)) * b2;
+      b2 = b1;
+      b1 = b;
+    }
+    return a[0] + t * b1 - 0.5 * b2;
+  }
 
  private:
   Matrix table(In x) const { return legendre_values(((2.0 * x.array() - x1 - x2) / (x2 - x1)).matrix(), static_cast<int>(coefficients.rows())); }
@@ -68,8 +80,8 @@ class Mirror {
   explicit Mirror(const Mesh& mesh);
   /// Share of int sqrt(c) V^2 dtau in the odd part: 0 symmetric, 1 antisymmetric.
   template <class S>
-  double odd_share(const Field<S>& f, Column column) const {
-    const ColumnVector<S> v = legendre_.leftCols(f.coefficients.rows()).template cast<S>() * f.coefficients.col(static_cast<int>(column));
+  double odd_share(const Field<S>& f, Quantity quantity) const {
+    const ColumnVector<S> v = legendre_.leftCols(f.coefficients.rows()).template cast<S>() * f.coefficients.col(static_cast<int>(quantity));
     double odd = 0.0, all = 0.0;
     for (Eigen::Index i = 0; i < v.size(); ++i) {
       const S here = amplitude_[i] * v[i], there = amplitude_[v.size() - 1 - i] * v[v.size() - 1 - i];

@@ -5,7 +5,6 @@
 #include <Eigen/LU>
 #include <boost/math/tools/minima.hpp>
 #include <cmath>
-#include <functional>
 #include <numbers>
 
 namespace whirl::models::catenary {
@@ -34,21 +33,6 @@ Eigen::VectorXcd reduced_solve(const Matrix& re, const Matrix& im, const Eigen::
   A.imag() = im;
   return A.partialPivLu().solve(right);
 }
-
-// Of a function on [x1, x2] in s = largest, refined from samples.
-Peak maximum(double x1, double x2, const Vector& x, const Vector& values, const std::function<double(double)>& f) {
-  Peak best{values[0], x1};
-  if (values[values.size() - 1] > best.value) best = {values[values.size() - 1], x2};
-  const double top = values.maxCoeff(), near = top - 0.02 * (top - values.minCoeff());
-  for (Eigen::Index i = 1; i + 1 < values.size(); ++i) {
-    if (values[i] < near || values[i] < values[i - 1] || values[i] < values[i + 1]) continue;
-    const auto found = boost::math::tools::brent_find_minima([&](double s) { return -f(s); }, x[i - 1], x[i + 1], 34);
-    if (-found.second > best.value) best = {-found.second, found.first};
-  }
-  return best;
-}
-
-Vector samples(const Field<Complex>& f) { return Vector::LinSpaced(std::max<Eigen::Index>(200, 8 * f.coefficients.rows()), f.x1, f.x2); }
 
 }  // namespace
 
@@ -92,24 +76,46 @@ ForcedMotion ForcedSolver::at(double omega, const EndMotion& ends) const {
   return motion;
 }
 
-Peak largest(const Field<Complex>& f, Column column) {
-  const Vector x = samples(f);
-  return maximum(f.x1, f.x2, x, f.at(x, column).cwiseAbs(), [&](double s) { return std::abs(f.at(s, column)); });
+PeakFinder::PeakFinder(const Mesh& mesh) {
+  const auto n = mesh.t.size();
+  const Vector t = Vector::LinSpaced(std::max<Eigen::Index>(200, 4 * n), -1.0, 1.0);
+  x_ = (mesh.x_m + mesh.m * t.array()).cwiseMax(mesh.x1).cwiseMin(mesh.x2);
+  c_ = x_.array().cosh();
+  legendre_ = legendre_values(t, static_cast<int>(n));
 }
 
-TotalTension total_tension(const Field<Complex>& f) {
-  const Vector x = samples(f), T = f.at(x, Column::T).cwiseAbs(), c = x.array().cosh();
-  const auto at = [&](double s) { return std::abs(f.at(s, Column::T)); };
-  Peak high = maximum(f.x1, f.x2, x, c + T, [&](double s) { return std::cosh(s) + at(s); });
-  Peak low = maximum(f.x1, f.x2, x, T - c, [&](double s) { return at(s) - std::cosh(s); });
+template <class F>
+Peak PeakFinder::maximum(const Vector& values, F&& f) const {
+  const auto last = values.size() - 1;
+  Peak best = values[last] > values[0] ? Peak{values[last], x_[last]} : Peak{values[0], x_[0]};
+  const double top = values.maxCoeff(), near = top - 0.02 * (top - values.minCoeff());
+  for (Eigen::Index i = 1; i < last; ++i) {
+    if (values[i] < near || values[i] < values[i - 1] || values[i] < values[i + 1]) continue;
+    const auto found = boost::math::tools::brent_find_minima([&](double s) { return -f(s); }, x_[i - 1], x_[i + 1], 34);
+    if (-found.second > best.value) best = {-found.second, found.first};
+  }
+  return best;
+}
+
+Peak PeakFinder::largest(const Field<Complex>& f, Quantity quantity) const {
+  const auto a = f.coefficients.col(static_cast<int>(quantity));
+  const Vector re = legendre_ * a.real(), im = legendre_ * a.imag();
+  return maximum((re.array().square() + im.array().square()).sqrt().matrix(), [&](double s) { return std::abs(f.at(s, quantity)); });
+}
+
+TotalTension PeakFinder::total_tension(const Field<Complex>& f) const {
+  const auto a = f.coefficients.col(static_cast<int>(Quantity::T));
+  const Vector re = legendre_ * a.real(), im = legendre_ * a.imag(), T = (re.array().square() + im.array().square()).sqrt();
+  const auto at = [&](double s) { return std::abs(f.at(s, Quantity::T)); };
+  Peak low = maximum(T - c_, [&](double s) { return at(s) - std::cosh(s); });
   low.value = -low.value;
-  return {high, low};
+  return {maximum(c_ + T, [&](double s) { return std::cosh(s) + at(s); }), low};
 }
 
-Matrix history(const std::vector<ForcedMotion>& motions, Column column, In x, In times, bool lateral) {
+Matrix history(const std::vector<ForcedMotion>& motions, Quantity quantity, In x, In times, bool lateral) {
   Matrix sum = Matrix::Zero(x.size(), times.size());
   for (const auto& motion : motions) {
-    const Eigen::VectorXcd values = (lateral ? motion.lateral : motion.in_plane).at(x, column);
+    const Eigen::VectorXcd values = (lateral ? motion.lateral : motion.in_plane).at(x, quantity);
     const Vector cosine = (motion.omega * times.array()).cos(), sine = (motion.omega * times.array()).sin();
     sum += values.real() * cosine.transpose() - values.imag() * sine.transpose();
   }

@@ -9,7 +9,7 @@
 ///
 ///     ForcedSolver solver(core, 6.0);                                   // frequencies up to 6 sqrt(g/a)
 ///     ForcedMotion motion = solver.at(2.0, {.U2 = 0.01});
-///     Peak T = largest(motion.in_plane, Column::T);                     // T.value at T.x
+///     Peak T = PeakFinder(solver.mesh()).largest(motion.in_plane, Quantity::T);      // T.value at T.x
 ///
 /// At a natural frequency of an undamped cable the motion is unbounded: the values are then huge, or not finite.
 /// Throws std::invalid_argument for a negative or too high frequency.
@@ -39,6 +39,7 @@ class ForcedSolver {
   ForcedSolver(const CoreCable& cable, double largest_omega);
   ForcedMotion at(double omega, const EndMotion& ends) const;
   int functions() const { return g_.functions(); }
+  const Mesh& mesh() const { return g_.mesh(); }
 
  private:
   CoreCable cable_;
@@ -48,18 +49,31 @@ class ForcedSolver {
   Matrix K_, MU_, MV_, K_lift_, MU_lift_, MV_lift_;
 };
 
-/// The largest modulus of a column along the cable, between points too: sampled, then refined to 1e-10.
+/// A largest value and where.
 struct Peak {
-  double value, x;
+  double value = 0.0, x = 0.0;
 };
-Peak largest(const Field<std::complex<double>>& field, Column column);
 /// The largest of cosh x + |T|, static and dynamic tension together, and the smallest of cosh x - |T|: below 0 the cable goes slack.
 struct TotalTension {
   Peak largest, smallest;
 };
-TotalTension total_tension(const Field<std::complex<double>>& field);
+
+/// Finds largest values along the cable, between points too: sampled, then refined to 1e-10. One object serves all fields of a solver.
+class PeakFinder {
+ public:
+  explicit PeakFinder(const Mesh& mesh);
+  /// Of the modulus of one quantity.
+  Peak largest(const Field<std::complex<double>>& field, Quantity quantity) const;
+  TotalTension total_tension(const Field<std::complex<double>>& field) const;
+
+ private:
+  template <class F>
+  Peak maximum(const Vector& values, F&& f) const;
+  Vector x_, c_;
+  Matrix legendre_;
+};
 
 /// Sum over harmonics of Re[value exp(i w_k t)] at given x (rows) and times (columns).
-Matrix history(const std::vector<ForcedMotion>& motions, Column column, In x, In times, bool lateral = false);
+Matrix history(const std::vector<ForcedMotion>& motions, Quantity quantity, In x, In times, bool lateral = false);
 
 }  // namespace whirl::models::catenary

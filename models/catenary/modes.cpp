@@ -113,7 +113,7 @@ Mode in_plane_mode(const InPlaneGalerkin& g, const Mirror& mirror, double kappa,
   for (Vector* v : {&at.U, &at.V, &at.N}) *v *= scale;
   mode.omega = omega;
   mode.field = field_of<double>(g.mesh(), at, -omega * omega, -omega * omega);
-  mode.odd_share = mirror.odd_share(mode.field, Column::V);
+  mode.odd_share = mirror.odd_share(mode.field, Quantity::V);
   mode.kind = kind_of(mode.odd_share);
   const Vector w = g.mesh().weight.cwiseProduct(g.mesh().c);
   mode.modal_mass = w.dot(at.U.cwiseAbs2()) + w.dot(at.V.cwiseAbs2());
@@ -131,7 +131,7 @@ Mode lateral_mode(const LateralGalerkin& g, const Mirror& mirror, double omega, 
   mode.field = {g.mesh().x1, g.mesh().x2, Matrix(W.size(), 2)};
   mode.field.coefficients.col(0) = g.mesh().project<double>(W);
   mode.field.coefficients.col(1) = g.mesh().project<double>(slope);
-  mode.odd_share = mirror.odd_share(mode.field, Column::W);
+  mode.odd_share = mirror.odd_share(mode.field, Quantity::W);
   mode.kind = kind_of(mode.odd_share);
   mode.modal_mass = g.mesh().weight.cwiseProduct(g.mesh().c).dot(W.cwiseAbs2());
   return mode;

@@ -7,7 +7,7 @@
 ///
 ///     ModeSet set = in_plane_modes({.x1 = g.x1, .x2 = g.x2, .kappa = 1e-3}, {.count = 8});
 ///     set.modes[0].omega, set.modes[0].kind, set.complete
-///     Vector v = set.modes[0].field.at(x, Column::V);
+///     Vector v = set.modes[0].field.at(x, Quantity::V);
 ///
 /// Throws std::invalid_argument for parameters out of range. A set that could not be resolved or counted says so: `resolved`, `complete`.
 

@@ -15,7 +15,7 @@ double x_of(double xi) { return std::copysign(std::acosh(1.0 + std::abs(xi)), xi
 
 // T as the source's program computes it: beyond xi = -0.7 odd derivatives with respect to |xi| have the wrong sign.
 double tension_of_the_print(const Field<Complex>& f, double x) {
-  const double U = f.at(x, Column::U).real(), V = f.at(x, Column::V).real(), N = f.at(x, Column::N).real(), T = f.at(x, Column::T).real();
+  const double U = f.at(x, Quantity::U).real(), V = f.at(x, Quantity::V).real(), N = f.at(x, Quantity::N).real(), T = f.at(x, Quantity::T).real();
   if (xi_of(x) > -0.7) return T;
   const double c = std::cosh(x), s = std::copysign(1.0, x), S = std::abs(std::sinh(x));
   const double Ux = V / c, Uxx = (N - U / c) / c - V * std::tanh(x) / c, Uz = Ux / (s * S), Uzz = (Uxx - Uz * c) / (S * S);
@@ -58,7 +58,7 @@ TEST_CASE("catenary forced: Table C-2 corrected, and what the print holds", "[pu
     const Geometry g = by_sag(t(i, "sag"), t(i, "h_over_b"));
     const ForcedSolver solver(core(g), 6.0);
     const ForcedMotion motion = solver.at(w, {.U2 = 0.01});
-    const Peak peak = largest(motion.in_plane, Column::T);
+    const Peak peak = PeakFinder(solver.mesh()).largest(motion.in_plane, Quantity::T);
     // The table's maxima inside the cable are the largest of some thousand points, and its xi has six decimals: there ours are a little larger.
     const bool at_end = peak.x == g.x1 || peak.x == g.x2;
     CHECK(peak.value >= t(i, "absTmax_continuous_correct") * (1.0 - 1e-7));
@@ -68,7 +68,7 @@ TEST_CASE("catenary forced: Table C-2 corrected, and what the print holds", "[pu
     double sampled = 0.0, print = 0.0;
     for (int k = 0; k < points; ++k) {
       const double xi = xi_of(g.x1) + k * (xi_of(g.x2) - xi_of(g.x1)) / (points - 1), x = std::clamp(x_of(xi), g.x1, g.x2);
-      sampled = std::max(sampled, std::abs(motion.in_plane.at(x, Column::T)));
+      sampled = std::max(sampled, std::abs(motion.in_plane.at(x, Quantity::T)));
       print = std::max(print, std::abs(tension_of_the_print(motion.in_plane, x)));
     }
     CHECK(sampled == Approx(t(i, "absTmax_at_Gale_points_correct")).epsilon(1e-7));
@@ -88,9 +88,9 @@ TEST_CASE("catenary forced: Table C-3 corrected", "[published]") {
     const ForcedMotion motion = ForcedSolver(core(g), 3.0).at(t(i, "omega_f"), {.U2 = 0.01});
     const double x1 = xi_of(g.x1), xi = x1 + t(i, "i") * (xi_of(g.x2) - x1) / 11.0, x = std::clamp(x_of(xi), g.x1, g.x2);
     CHECK(xi == Approx(t(i, "xi")).margin(1e-6));
-    CHECK(std::abs(motion.in_plane.at(x, Column::U) - t(i, "U_true")) < 1e-9);  // 10 decimals given
-    CHECK(std::abs(motion.in_plane.at(x, Column::V) - t(i, "V_true")) < 1e-9);
-    CHECK(std::abs(motion.in_plane.at(x, Column::T) - t(i, "T_true")) < 1e-9);
+    CHECK(std::abs(motion.in_plane.at(x, Quantity::U) - t(i, "U_true")) < 1e-9);  // 10 decimals given
+    CHECK(std::abs(motion.in_plane.at(x, Quantity::V) - t(i, "V_true")) < 1e-9);
+    CHECK(std::abs(motion.in_plane.at(x, Quantity::T) - t(i, "T_true")) < 1e-9);
   }
 }
 
@@ -109,7 +109,7 @@ TEST_CASE("catenary forced: agrees with the core system integrated, elastic and 
         for (const double x : {g.x1, 0.4 * g.x1 + 0.6 * g.x2, g.x2}) {
           const Eigen::Vector4cd exact = shot(c, w, e, x);
           Eigen::Vector4cd ours;
-          for (int k = 0; k < 4; ++k) ours[k] = motion.in_plane.at(x, Column(k));
+          for (int k = 0; k < 4; ++k) ours[k] = motion.in_plane.at(x, Quantity(k));
           INFO("kappa " << kappa << " w " << w << " end " << end << " x " << x << "\n" << exact.transpose() << "\n" << ours.transpose());
           // Of the two ways the shooting is the worse conditioned: rounding times the growth of its solutions.
           CHECK((ours - exact).cwiseAbs().maxCoeff() < 1e-9 * std::max(1.0, exact.cwiseAbs().maxCoeff()));
@@ -131,7 +131,7 @@ TEST_CASE("catenary forced: at rest the tension is that of the displaced catenar
         return std::hypot(k.a, k.a * std::sinh(k.x1) + arc);
       };
       const double d = 3e-4, slope = (8.0 * (tension(d) - tension(-d)) - (tension(2 * d) - tension(-2 * d))) / (12.0 * d);
-      CHECK(field.at(x, Column::T).real() == Approx(slope).epsilon(1e-9));  // difference formula: d^4
+      CHECK(field.at(x, Quantity::T).real() == Approx(slope).epsilon(1e-9));  // difference formula: d^4
     }
   }
 }
@@ -141,14 +141,14 @@ TEST_CASE("catenary forced: out of plane, and superposition of harmonics") {
   const double w = 1.3 / (2.0 * g.m);
   const ForcedMotion motion = ForcedSolver(core(g), w).at(w, {.W2 = 0.1});
   for (const double part : {0.1, 0.5, 0.9})
-    CHECK(motion.lateral.at(g.x1 + 2.0 * g.m * part, Column::W).real() == Approx(0.1 * std::sin(1.3 * part) / std::sin(1.3)).epsilon(1e-4));
+    CHECK(motion.lateral.at(g.x1 + 2.0 * g.m * part, Quantity::W).real() == Approx(0.1 * std::sin(1.3 * part) / std::sin(1.3)).epsilon(1e-4));
   const Geometry deep = unit_geometry(1.0, 0.3);
   CoreCable c = core(deep);
   c.eta2 = c.eta3 = 0.2;
   const ForcedSolver solver(c, 4.0);
   const std::vector<ForcedMotion> parts = {solver.at(1.0, {.V1 = 0.01, .W2 = Complex(0.0, 0.02)}), solver.at(2.0, {.V1 = Complex(0.002, 0.001)})};
   const Vector x = Vector::LinSpaced(3, deep.x1, deep.x2), times = Vector::LinSpaced(5, 0.0, 3.0);
-  const Matrix v = history(parts, Column::V, x, times), lateral = history(parts, Column::W, x, times, true);
+  const Matrix v = history(parts, Quantity::V, x, times), lateral = history(parts, Quantity::W, x, times, true);
   for (int k = 0; k < 5; ++k) {
     const double t = times[k];
     CHECK(v(0, k) == Approx(0.01 * std::cos(t) + 0.002 * std::cos(2 * t) - 0.001 * std::sin(2 * t)).margin(1e-13));
@@ -163,9 +163,11 @@ TEST_CASE("catenary forced: out of plane, and superposition of harmonics") {
 
 TEST_CASE("catenary forced: the total tension and where the cable goes slack") {
   const Geometry g = unit_geometry(0.5, 0.0);
-  const auto still = ForcedSolver(core(g), 1.0).at(0.5, {.U2 = 1e-9}).in_plane;
-  CHECK(total_tension(still).largest.value == Approx(std::cosh(0.5)));
-  CHECK(total_tension(still).smallest.value == Approx(1.0).epsilon(1e-6));
-  const auto wild = ForcedSolver(core(g), 6.0).at(5.8, {.U2 = 0.5}).in_plane;
-  CHECK(total_tension(wild).smallest.value < 0.0);
+  const ForcedSolver solver(core(g), 6.0);
+  const PeakFinder peaks(solver.mesh());
+  const TotalTension still = peaks.total_tension(solver.at(0.5, {.U2 = 1e-9}).in_plane),
+                     wild = peaks.total_tension(solver.at(5.8, {.U2 = 0.5}).in_plane);
+  CHECK(still.largest.value == Approx(std::cosh(0.5)));
+  CHECK(still.smallest.value == Approx(1.0).epsilon(1e-6));
+  CHECK(wild.smallest.value < 0.0);
 }

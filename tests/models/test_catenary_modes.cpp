@@ -153,18 +153,18 @@ TEST_CASE("catenary modes: a mode satisfies the core system") {
       const auto& f = mode.field;
       const double d = 1e-3, L = -mode.omega * mode.omega;
       for (double x = g.x1 + 0.11; x < g.x2 - 0.11; x += 0.37) {
-        const auto slope = [&](Column k) {  // sixth order: d^6 times the seventh derivative, w^7 at most
+        const auto slope = [&](Quantity k) {  // sixth order: d^6 times the seventh derivative, w^7 at most
           const auto at = [&](double s) { return f.at(x + s, k); };
           return (45.0 * (at(d) - at(-d)) - 9.0 * (at(2 * d) - at(-2 * d)) + at(3 * d) - at(-3 * d)) / (60.0 * d);
         };
-        const double c = std::cosh(x), U = f.at(x, Column::U), V = f.at(x, Column::V), N = f.at(x, Column::N), T = f.at(x, Column::T);
+        const double c = std::cosh(x), U = f.at(x, Quantity::U), V = f.at(x, Quantity::V), N = f.at(x, Quantity::N), T = f.at(x, Quantity::T);
         const double scale = mode.omega * mode.omega * std::cosh(g.x2);
-        CHECK(slope(Column::U) == Approx(V / c + kappa * c * T).margin(1e-9));
-        CHECK(slope(Column::V) == Approx(N - U / c).margin(1e-8));
-        CHECK(slope(Column::N) == Approx(L * c * V - T / c).margin(1e-8 * scale));
-        CHECK(slope(Column::T) == Approx(L * c * U + N / c).margin(1e-8 * scale));
+        CHECK(slope(Quantity::U) == Approx(V / c + kappa * c * T).margin(1e-9));
+        CHECK(slope(Quantity::V) == Approx(N - U / c).margin(1e-8));
+        CHECK(slope(Quantity::N) == Approx(L * c * V - T / c).margin(1e-8 * scale));
+        CHECK(slope(Quantity::T) == Approx(L * c * U + N / c).margin(1e-8 * scale));
       }
-      for (const double x : {g.x1, g.x2}) CHECK(std::hypot(f.at(x, Column::U), f.at(x, Column::V)) < 1e-10);
+      for (const double x : {g.x1, g.x2}) CHECK(std::hypot(f.at(x, Quantity::U), f.at(x, Quantity::V)) < 1e-10);
     }
   }
 }
