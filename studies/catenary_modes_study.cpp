@@ -2,10 +2,12 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
 #include "core/parallel.hpp"
+#include "models/catenary/gale_series.hpp"
 #include "studies/catenary_keys.hpp"
 #include "studies/common_keys.hpp"
 
@@ -29,6 +31,9 @@ Schema schema() {
          .upper = 100000,
          .closed_lower = true,
          .closed_upper = true});
+  s.add({.name = "series.compare",
+         .description = "solve again by the source's series, inextensible cable with |xi| < 4 at both ends, and compare",
+         .default_value = false});
   s.add({.name = "sweep.sag_parameter",
          .description = "range of b/sqrt(l^2 - h^2), 1 taut, over which frequencies in sqrt(g/a) are tabulated",
          .default_value = std::vector<double>{0.5, 0.98},
@@ -61,7 +66,14 @@ HangingCable setup(const Configuration& c) {
     } catch (const std::invalid_argument& e) {
       throw c.error("sweep.height_over_span", e.what());
     }
-  return hanging_cable_of(c);
+  const HangingCable cable = hanging_cable_of(c);
+  if (c.flag("series.compare")) try {
+      if (core_of(cable).kappa > 0.0) throw std::invalid_argument("the series method is for inextensible cables: leave out cable.axial_stiffness");
+      (void)series_determinant(cable.shape.x1, cable.shape.x2, 1.0, Plane::in_plane);
+    } catch (const std::invalid_argument& e) {
+      throw c.error("series.compare", e.what());
+    }
+  return cable;
 }
 
 std::vector<std::string> check(const Configuration& c) { return hanging_cable_warnings(setup(c)); }
@@ -153,6 +165,28 @@ void write_sweep(ResultFile& file, const Configuration& c, double h, bool latera
   if (unresolved > 0) failures.push_back(fmt::format("{}: {} of {} cables could not be resolved", group, unresolved.load(), points));
 }
 
+// The series method beside the spectral frequencies; modes it refuses are left out.
+void write_series(ResultFile& file, const HangingCable& cable, int count, bool lateral, RunContext& context, std::vector<std::string>& failures) {
+  const SeriesModes s = series_modes(cable.shape.x1, cable.shape.x2, count, lateral ? Plane::out_of_plane : Plane::in_plane);
+  std::vector<Column> t{{"mode", "-", "number", {}},
+                        {"omega_ratio", "-", "omega / sqrt(g/a) by series", {}},
+                        {"difference", "-", "relative, from the spectral solver", {}},
+                        {"digits_lost", "-", "decimal digits cancelled in the sums", {}}};
+  if (!s.agrees())
+    failures.push_back(fmt::format("series {}: {} modes missing, {} sign changes too many", plane_name(lateral), s.missing, s.spurious));
+  else
+    for (std::size_t k = 0; k < s.omega.size(); ++k) {
+      const double row[] = {double(k + 1), s.omega[k], s.omega[k] / s.spectral[k] - 1.0, s.digits_lost[k]};
+      for (std::size_t i = 0; i < t.size(); ++i) t[i].values.push_back(row[i]);
+    }
+  if (s.refused > 0)
+    context.warn(fmt::format("series {}: the {} highest modes are refused, their sums lose more than nine digits", plane_name(lateral), s.refused));
+  file.table(fmt::format("/series/{}", plane_name(lateral)), t);
+  if (!context.quiet && s.agrees() && !s.omega.empty())
+    fmt::print(stderr, "series {}: {} modes, {} terms, largest difference {:.1e}, {:.1f} digits lost at most\n", plane_name(lateral), s.omega.size(),
+               s.terms, s.worst_difference(), *std::max_element(s.digits_lost.begin(), s.digits_lost.end()));
+}
+
 std::string text(const Found& found, double unit, bool lateral) {
   std::string out = fmt::format("{:<13} {:>4} {:>18} {:>16} {:>16} {:>9} {:>9}  {}\n", lateral ? "out of plane" : "in plane", "mode", "omega [rad/s]",
                                 "frequency [Hz]", "omega/sqrt(g/a)", "odd", "elastic", "kind");
@@ -207,6 +241,7 @@ ExitStatus run(const Configuration& c, RunContext& context) {
     if (!f.set.complete())
       failures.push_back(fmt::format("modes {} are not proved complete: {} listed, {} counted", plane_name(lateral), f.set.expected, f.set.counted));
     if (!context.quiet) fmt::print(stderr, "{}", text(f, unit, lateral));
+    if (c.flag("series.compare")) write_series(file, cable, count, lateral, context, failures);
   }
   file.flush();
   for (const double h : c.numbers("sweep.height_over_span"))

@@ -117,7 +117,7 @@ Mode in_plane_mode(const InPlaneGalerkin& g, const Mirror& mirror, double kappa,
   mode.kind = kind_of(mode.odd_share);
   const Vector w = g.mesh().weight.cwiseProduct(g.mesh().c);
   mode.modal_mass = w.dot(at.U.cwiseAbs2()) + w.dot(at.V.cwiseAbs2());
-  mode.elastic_share = 1.0 - g.mesh().weight.dot(at.N.cwiseAbs2()) / (omega * omega * mode.modal_mass);
+  if (kappa > 0.0) mode.elastic_share = 1.0 - g.mesh().weight.dot(at.N.cwiseAbs2()) / (omega * omega * mode.modal_mass);
   return mode;
 }
 
@@ -158,7 +158,7 @@ void ModeOptions::validate() const {
   if (functions < 0 || functions > 2000) throw std::invalid_argument(fmt::format("the number of functions must lie in [0, 2000], got {}", functions));
 }
 
-int functions_for(double m, int count) { return 24 + static_cast<int>(1.6 * count + 8.0 * m); }
+int functions_for(double m, int count) { return 24 + static_cast<int>(1.6 * count + (8.0 + 0.8 * m) * m); }
 
 ModeSet in_plane_modes(const CoreCable& c, const ModeOptions& o) {
   check(c);
