@@ -36,7 +36,7 @@ InPlaneGalerkin::InPlaneGalerkin(double x1, double x2, int n) : n_(n), mesh_(x1,
   // Q, dQ/dx and U of every function; V = c Q, V_x = c (Q_x + tanh x Q)
   Matrix Q = Matrix::Zero(points, all), Qx = Q;
   U_.setZero(points, all);
-  Matrix R = Matrix::Zero(points, 2 * n + 1);
+  R_.setZero(points, 2 * n + 1);
   const double a_scale = std::sqrt(m);
   for (int k = 1; k <= n; ++k) {
     const double b_scale = std::sqrt((k + 0.5) / m);
@@ -44,13 +44,13 @@ InPlaneGalerkin::InPlaneGalerkin(double x1, double x2, int n) : n_(n), mesh_(x1,
     Qx.col(k - 1) = (a_scale / m) * slope.col(k);
     U_.col(k - 1) = (a_scale * m) * phi_integral.col(k);
     U_.col(n + k - 1) = (b_scale * m) * p_integral.col(k);
-    R.col(n + k - 1) = b_scale * mesh_.legendre.col(k);
+    R_.col(n + k - 1) = b_scale * mesh_.legendre.col(k);
   }
   const double c_scale = 1.0 / std::sqrt(m);
   Q.col(2 * n) = c_scale * phi.col(0);
   Qx.col(2 * n) = (c_scale / m) * slope.col(0);
   U_.col(2 * n) = (c_scale * m) * (phi_integral.col(0) - sixth * p_integral.col(0));
-  R.col(2 * n).setConstant(-c_scale * sixth);
+  R_.col(2 * n).setConstant(-c_scale * sixth);
   // Lifts Q = alpha + beta t + gamma phi_0 with Q = V/c at the ends, U1 + m int Q = U2
   for (int i = 0; i < lifts; ++i) {
     const double U1 = i == 0, V1 = i == 1, U2 = i == 2, V2 = i == 3, Q1 = V1 / std::cosh(x1), Q2 = V2 / std::cosh(x2);
@@ -71,7 +71,7 @@ InPlaneGalerkin::InPlaneGalerkin(double x1, double x2, int n) : n_(n), mesh_(x1,
     return g.selfadjointView<Eigen::Lower>();
   };
   KF_ = gram(F_, mesh_.weight);
-  KR_ = gram(R, mesh_.weight.cwiseQuotient(c));
+  KR_ = gram(R_, mesh_.weight.cwiseQuotient(c));
   MU_ = gram(U_, mesh_.weight.cwiseProduct(c));
   MV_ = gram(V_, mesh_.weight.cwiseProduct(c));
   if (std::abs(mesh_.x_m) < 1e-14 * m) {  // a level cable: what couples the parities is rounding

@@ -75,6 +75,7 @@ class InPlaneGalerkin {
   const Matrix& U() const { return U_; }
   const Matrix& V() const { return V_; }
   const Matrix& F() const { return F_; }
+  const Matrix& R() const { return R_; }  ///< stretch of A, B and C, no lifts
 
   /// U, V, N at the mesh points for coefficients q of size(kappa) and end values.
   template <class S>
@@ -97,7 +98,7 @@ class InPlaneGalerkin {
 
   int n_;
   Mesh mesh_;
-  Matrix U_, V_, F_;
+  Matrix U_, V_, F_, R_;
   Matrix KF_, KR_, MU_, MV_;  // with the lifts' rows and columns, KR_ without
 };
 
