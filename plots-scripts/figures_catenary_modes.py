@@ -2,7 +2,7 @@
 import numpy as np
 
 from catenary_parts import KINDS, cable_words, in_order, moved, scalar, sentence
-from figures_common import BLUE, CYCLE, GREY, VERMILLION, Page, letter, line_key, number
+from figures_common import BLUE, CYCLE, DASHES, GREY, INK, VERMILLION, Page, letter, line_key, number
 
 
 def figures(result):
@@ -93,6 +93,8 @@ def sag(result):
     here = scalar(cable, "height_difference") / scalar(cable, "span")
     keys = [line_key(f"{words} mode, inextensible cable", color=colour, linewidth=1.2)
             for words, colour in (("1st, 3rd, 5th", BLUE), ("2nd, 4th, 6th", VERMILLION))]
+    if any("pendulum" in result.group(f"sweep/{p}/{n}").columns for p, names in planes for _, n in names):
+        keys.append(line_key("rigid cable about its chord", color=INK, linewidth=1.0, linestyle=DASHES))
     if any(abs(h - here) < 1e-9 for _, names in planes for h, _ in names):
         keys.append(line_key("sag parameter of this study's cable", color=GREY, linewidth=0.8, linestyle=(0, (2, 2))))
     page = Page(max(4.5, 1.75 * columns), 2.6 * len(planes), "Natural frequencies against the sag of a hanging cable",
@@ -117,6 +119,8 @@ def draw_sag(axes, table):
     names = [c for c in table.columns if c.startswith("w")][:6]
     for i, name in enumerate(sorted(names, key=lambda n: int(n[1:]))):
         axes.plot(x, table.column(name), color=BLUE if i % 2 == 0 else VERMILLION, linewidth=1.2)
+    if "pendulum" in table.columns:
+        axes.plot(x, table.column("pendulum"), color=INK, linewidth=1.0, linestyle=DASHES)
     axes.set_ylim(0, 26)
     axes.set_xlim(x[0], x[-1])
     axes.grid(True, color="#ececec", linewidth=0.6)

@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "core/parallel.hpp"
+#include "models/catenary/backbone.hpp"
 #include "models/catenary/gale_series.hpp"
 #include "studies/catenary_keys.hpp"
 #include "studies/common_keys.hpp"
@@ -123,6 +124,24 @@ std::vector<Column> mode_columns(const Found& found, double unit) {
   return t;
 }
 
+// How the frequencies out of plane depend on the amplitude.
+void add_backbone(std::vector<Column>& t, const HangingCable& cable, CoreCable core, int count) {
+  core.kappa = std::max(core.kappa, 1e-7);  // stands for an inextensible cable
+  Column curvature{"curvature", "1/m^2", "relative change of the frequency per square of the largest displacement, to second order", {}};
+  Column detuning{
+      "detuning", "-", "relative distance of twice the frequency from the nearest one in plane; small: internal resonance, curvature fails", {}};
+  const double a = cable.shape.a;
+  for (int mode = 1; mode <= count; ++mode) {
+    Backbone b;
+    if (mode <= 8) b = lateral_backbone(core, mode);
+    else b.curvature = b.detuning = std::nan("");
+    curvature.values.push_back(b.curvature / (a * a));
+    detuning.values.push_back(b.detuning);
+  }
+  t.push_back(curvature);
+  t.push_back(detuning);
+}
+
 void write_shapes(ResultFile& file, const HangingCable& cable, const Found& found, bool lateral, int points) {
   const Along line = along(cable, points);
   const double H = horizontal_tension(cable), a = cable.shape.a;
@@ -148,6 +167,8 @@ void write_sweep(ResultFile& file, const Configuration& c, double h, bool latera
   const auto& range = c.numbers("sweep.sag_parameter");
   std::vector<Column> t{{"sag_parameter", "-", "b / sqrt(l^2 - h^2)", std::vector<double>(std::size_t(points))}};
   for (int k = 1; k <= count; ++k) t.push_back({fmt::format("w{}", k), "-", "omega / sqrt(g/a)", std::vector<double>(std::size_t(points))});
+  if (lateral)
+    t.push_back({"pendulum", "-", "the rigid cable swinging about its chord, Rayleigh's estimate of w1", std::vector<double>(std::size_t(points))});
   std::atomic<int> unresolved{0};
   parallel_for(std::size_t(points), [&](std::size_t i) {
     const double sag = range[0] + (range[1] - range[0]) * double(i) / (points - 1);
@@ -157,6 +178,7 @@ void write_sweep(ResultFile& file, const Configuration& c, double h, bool latera
     const ModeSet set = lateral ? out_of_plane_modes(core, options) : in_plane_modes(core, options);
     if (!set.complete()) ++unresolved;
     t[0].values[i] = sag;
+    if (lateral) t.back().values[i] = pendulum_estimate(g);
     for (std::size_t k = 0; k < std::size_t(count); ++k) t[k + 1].values[i] = k < set.modes.size() ? set.modes[k].omega : std::nan("");
   });
   const std::string group = fmt::format("/sweep/{}/h{:g}", plane_name(lateral), h);
@@ -229,10 +251,12 @@ ExitStatus run(const Configuration& c, RunContext& context) {
     f.set.resolved = true;
     if (count == 0) continue;
     f = find(core, count, lateral);
+    auto columns = mode_columns(f, unit);
+    if (lateral) add_backbone(columns, cable, core, count);
     TextColumn kinds{"kind", "symmetric, antisymmetric or hybrid (5 to 95 % odd)", {}};
     for (const auto& mode : f.set.modes) kinds.values.emplace_back(to_string(mode.kind));
     const std::string group = fmt::format("/modes/{}", plane_name(lateral));
-    file.table(group, mode_columns(f, unit), {kinds});
+    file.table(group, columns, {kinds});
     file.attribute(group, "counted", double(f.set.counted));
     file.attribute(group, "expected", double(f.set.expected));
     file.attribute(group, "counted_below", f.set.counted_below * unit);
