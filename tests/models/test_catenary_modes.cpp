@@ -2,7 +2,6 @@
 #include <boost/numeric/odeint.hpp>
 #include <cmath>
 
-#include "core/symmetric_pencil.hpp"
 #include "models/statics.hpp"
 #include "tests/models/catenary/reference.hpp"
 
@@ -222,19 +221,4 @@ TEST_CASE("catenary modes: shallow limit, Irvine's frequency equation", "[publis
     // Irvine's root is the limit with an error of order (b/a)^2, at most a twentieth of it.
     CHECK(std::abs(symmetric.at(0) / symmetric_root(lambda2) - 1.0) < 0.05 * 4.0 * m * m);
   }
-}
-
-TEST_CASE("symmetric pencil: inertia counts and refusals") {
-  Matrix K = Matrix::Identity(3, 3), M = Matrix::Zero(3, 3);
-  M.diagonal() << 1.0, 0.25, 0.0;
-  const PencilModes modes = lowest_modes(K, M, 3);
-  CHECK(modes.omega[0] == Approx(1.0));
-  CHECK(modes.omega[1] == Approx(2.0));
-  CHECK(std::isinf(modes.omega[2]));
-  CHECK(frequencies_below(K, M, 0.9) == 0);
-  CHECK(frequencies_below(K, M, 1.5) == 1);
-  CHECK(frequencies_below(K, M, 1e6) == 2);
-  CHECK(modes.vectors.col(1).dot(M * modes.vectors.col(1)) == Approx(1.0));
-  CHECK_THROWS_AS(lowest_modes(-K, M, 1), std::invalid_argument);
-  CHECK_THROWS_AS(lowest_modes(K, Matrix::Zero(2, 2), 1), std::invalid_argument);
 }
