@@ -395,7 +395,7 @@ std::string example_toml(const Schema& schema) {
     for (const Key& key : schema.keys()) {
       if (section_of(key.name) != section) continue;
       const std::string role = key.required ? "required" : key.optional ? "optional" : "default " + toml_text(key.default_value);
-      const bool commented = key.optional || (key.required && !key.example);
+      const bool commented = (key.optional && !key.suggested) || (key.required && !key.example);
       const std::string value = key.example ? toml_text(*key.example) : key.required || key.optional ? "" : toml_text(key.default_value);
       text += fmt::format("# {}: {}; {}\n{}{} ={}{}\n", key.description, key.accepted(), role, commented ? "# " : "", leaf_of(key.name),
                           value.empty() ? "" : " ", value);

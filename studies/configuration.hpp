@@ -49,6 +49,7 @@ struct Key {
   Value default_value = 0.0;
   bool required = false;                                    ///< must be given
   bool optional = false;                                    ///< may be left without a value
+  bool suggested = false;                                   ///< optional, yet filled in with its example by `whirl init`
   double lower = -std::numeric_limits<double>::infinity();  ///< of a number, and of every element of an array
   double upper = std::numeric_limits<double>::infinity();
   bool closed_lower = false, closed_upper = false;

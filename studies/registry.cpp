@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include "studies/basins_study.hpp"
+#include "studies/catenary_forced_study.hpp"
+#include "studies/catenary_modes_study.hpp"
 #include "studies/compare_study.hpp"
 #include "studies/continuation_study.hpp"
 #include "studies/guy_modes_study.hpp"
@@ -13,13 +15,26 @@
 #include "studies/slow_flow_study.hpp"
 #include "studies/superharmonic_study.hpp"
 #include "studies/two_parameter_study.hpp"
+#include "studies/veering_study.hpp"
 
 namespace whirl::studies {
 
 const std::vector<StudyKind>& study_kinds() {
   static const std::vector<StudyKind> kinds = {
-      superharmonic_study(), continuation_study(), two_parameter_study(), periodic_study(),  slow_flow_study(),     compare_study(),
-      integrate_study(),     basins_study(),       guy_statics_study(),   guy_modes_study(), guy_stiffness_study(),
+      superharmonic_study(),
+      continuation_study(),
+      two_parameter_study(),
+      periodic_study(),
+      slow_flow_study(),
+      compare_study(),
+      integrate_study(),
+      basins_study(),
+      catenary_modes_study(),
+      catenary_forced_study(),
+      veering_study(),
+      guy_statics_study(),
+      guy_modes_study(),
+      guy_stiffness_study(),
   };
   return kinds;
 }

@@ -568,6 +568,83 @@ def test_jumps_through_infinity_are_cut(folder):
     check(len(x) == 7 and np.isnan(x[2]) and np.isnan(y[2]) and np.sum(np.isnan(y)) == 1, f"{x} {y}")
 
 
+def hanging(file, kind):
+    """A level cable of span 100 m, its line a parabola."""
+    file.require_group("study").attrs.update({"kind": kind, "outcome": "complete", "end_motion.end": "upper", "end_motion.tangential": [0.5]})
+    numbers = {"span": 100, "height_difference": 0, "length": 110, "sag_parameter": 0.9, "flexibility": 1e-3, "half_width": 0.8,
+               "horizontal_tension": 6e3, "lower_tension": 8e3, "xi_lower": -0.3, "xi_upper": 0.3}
+    for name, value in numbers.items():
+        file[f"cable/{name}"] = float(value)
+    x = np.linspace(0, 100, 41)
+    return {"s": 1.1 * x, "x": x, "y": 0.01 * x * (x - 100)}
+
+
+def catenary_modes(path):
+    with h5py.File(path, "w") as file:
+        line = hanging(file, "catenary-modes")
+        wave = [np.sin(k * np.pi * line["x"] / 100) for k in (1, 2)]
+        for k, w in enumerate(wave, 1):
+            table(file, f"/shapes/in_plane/mode{k}", {**line, "U": 0.1 * w, "V": w, "rotation": w, "tension": 1e3 * w})
+            table(file, f"/shapes/out_of_plane/mode{k}", {**line, "W": w})
+        for plane in ("in_plane", "out_of_plane"):
+            table(file, f"/modes/{plane}", {"frequency": [0.1, 0.2], "kind": ["symmetric", "antisymmetric"]})
+            sag = np.linspace(0.5, 0.95, 9)
+            for h in ("0", "0.5"):
+                table(file, f"/sweep/{plane}/h{h}", {"sag_parameter": sag, "w1": 1 / (1 - sag), "w2": 2 / (1 - sag)})
+
+
+def catenary_forced(path):
+    with h5py.File(path, "w") as file:
+        line = hanging(file, "catenary-forced")
+        omega = np.linspace(0, 4, 50)
+        peak = 1 / (0.01 + (omega - 2) ** 2)
+        table(file, "/resonance", {"omega": omega, "tension": 1e3 * peak, "tension_upper": 9e2 * peak, "V": peak})
+        table(file, "/natural", {"omega": [2.0], "plane": ["in_plane"]})
+        w = np.sin(np.pi * line["x"] / 100)
+        for name in ("w0.8", "w1.2"):
+            table(file, f"/motions/{name}/h1", {**line, "U": 0.1 * w, "U_phase": 0 * w, "V": w, "V_phase": 0 * w, "tension": 1e3 * w})
+            table(file, f"/motions/{name}/envelope", {**line, "static_tension": 6e3 + 0 * w, "total_max": 7e3 + w, "total_min": 5e3 - w})
+
+
+def veering(path):
+    with h5py.File(path, "w") as file:
+        hanging(file, "veering")
+        kappa = np.geomspace(1e-3, 0.1, 20)
+        for h in ("0", "0.1"):
+            table(file, f"/fan/h{h}", {"flexibility": kappa, "omega1": 2 + 0 * kappa, "omega2": 3 - 10 * kappa, "odd1": kappa > 0.01, "odd2": kappa < 0.01})
+        table(file, "/approaches", {"height_over_span": [0.0, 0.1], "flexibility": [0.1, 0.1], "omega_lower": [2.0, 1.98], "omega_upper": [2.0, 2.02],
+                                    "gap": [0.0, 0.02], "what": ["crossing", "veering"]})
+        x = np.linspace(0, 1, 20)
+        for stage in ("stiffer", "closest", "softer"):
+            group = table(file, f"/hybrid/h0.1/{stage}", {"x": x, "V_lower": np.sin(np.pi * x), "V_upper": np.sin(2 * np.pi * x)})
+            group.attrs.update({"flexibility": 0.01, "lower_mode": 1.0, "odd_lower": 0.1, "odd_upper": 0.9})
+
+
+def test_hanging_cables(folder):
+    for make, names in ((catenary_modes, ["modes", "sag", "tension"]), (catenary_forced, ["along", "resonance", "shape"]),
+                        (veering, ["frequencies", "hybrid"])):
+        path = os.path.join(folder, f"{make.__name__}.h5")
+        make(path)
+        done = plot(path)
+        check(done.returncode == 0 and done.stderr == "", done.stderr)
+        made = sorted(n for n in os.listdir(folder) if n.startswith(make.__name__ + "-"))
+        check(made == sorted(f"{make.__name__}-{n}.{f}" for n in names for f in ("png", "pdf")), str(made))
+        for n in made:
+            (check_picture if n.endswith("png") else check_document)(os.path.join(folder, n))
+
+
+def test_hanging_cable_moved(folder):
+    """Displacements turn with the cable: on a level stretch U is horizontal, on a rising one V leans back."""
+    from catenary_parts import moved
+    from result_file import Group
+    x = np.linspace(0, 1, 5)
+    for slope in (0.0, 1.0):
+        line = Group(columns={"x": x, "y": slope * x, "U": 0 * x + 0.1, "V": 0 * x + 0.2})
+        dx, dy = (a - b for a, b in zip(moved(line, ("U", "V"), 1.0), (x, slope * x)))
+        c = 1 / np.hypot(1, slope)
+        check(np.allclose(dx, c * (0.1 - slope * 0.2)) and np.allclose(dy, c * (slope * 0.1 + 0.2)), f"{dx} {dy}")
+
+
 def test_truncated(folder):
     path = os.path.join(folder, "whole.h5")
     superharmonic(path)

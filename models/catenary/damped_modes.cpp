@@ -1,0 +1,117 @@
+// Damped modes in plane: the quadratic eigenproblem (lambda^2 M + lambda C + K) q = 0, C = eta1 MU + eta2 MV.
+//
+//     mu = 1/lambda,  K = L L',  z = L' q:      [ 0        I     ] [z ]        [z ]
+//                                               [ -M~     -C~    ] [w ]  = mu  [w ],   w = mu z,  A~ = L^-1 A L^-T
+//
+// The slowest modes are the largest mu. Each is then polished: inverse iteration for q, the Rayleigh functional q'(lambda^2 M + lambda C + K) q = 0
+// (q', not its conjugate: K, M, C are real symmetric, so q is its own left eigenvector) for lambda.
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <Eigen/LU>
+#include <algorithm>
+
+#include "models/catenary/modes.hpp"
+
+namespace whirl::models::catenary {
+namespace {
+
+using Complex = std::complex<double>;
+using ComplexVector = Eigen::VectorXcd;
+
+struct QuadraticProblem {
+  Matrix K, C, M;
+
+  // All roots with Im lambda >= 0.
+  std::vector<Complex> roots() const {
+    const Eigen::LLT<Matrix> llt(K);
+    const auto reduced = [&](const Matrix& a) {
+      Matrix b = a;
+      llt.matrixL().solveInPlace(b);
+      b.transposeInPlace();
+      llt.matrixL().solveInPlace(b);
+      return b;
+    };
+    const auto n = K.rows();
+    Matrix A = Matrix::Zero(2 * n, 2 * n);
+    A.topRightCorner(n, n).setIdentity();
+    A.bottomLeftCorner(n, n) = -reduced(M);
+    A.bottomRightCorner(n, n) = -reduced(C);
+    const Eigen::EigenSolver<Matrix> solver(A, false);
+    std::vector<Complex> lambda;
+    for (Eigen::Index i = 0; i < 2 * n; ++i) {
+      const Complex mu = solver.eigenvalues()[i];
+      if (std::abs(mu) > 1e-8 && mu.imag() <= 0.0) lambda.push_back(1.0 / mu);
+    }
+    return lambda;
+  }
+
+  // The root of the Rayleigh functional next to lambda.
+  Complex functional(const ComplexVector& q, Complex lambda) const {
+    const Complex m = (q.transpose() * (M * q))(0), c = (q.transpose() * (C * q))(0), k = (q.transpose() * (K * q))(0);
+    const Complex root = std::sqrt(c * c - 4.0 * m * k), one = (-c + root) / (2.0 * m), two = (-c - root) / (2.0 * m);
+    return std::abs(one - lambda) < std::abs(two - lambda) ? one : two;
+  }
+
+  ComplexVector polish(Complex& lambda) const {
+    ComplexVector q = ComplexVector::Ones(K.rows());
+    for (int step = 0; step < 4; ++step) {
+      const Complex shift = lambda * (1.0 + 1e-10);  // just off the root: the matrix stays invertible
+      const Eigen::PartialPivLU<Eigen::MatrixXcd> lu(shift * shift * M + shift * C + K);
+      for (int i = 0; i < (step == 0 ? 3 : 1); ++i) q = lu.solve((2.0 * shift * M + C) * q).normalized();
+      const Complex next = functional(q, lambda);
+      if (!(std::abs(next - lambda) < 1e-3 * std::abs(lambda))) break;  // a double root: keep what the eigenvalues gave
+      const bool done = std::abs(next - lambda) < 1e-14 * std::abs(lambda);
+      lambda = next;
+      if (done) break;
+    }
+    return q;
+  }
+};
+
+DampedMode mode_of(const InPlaneGalerkin& g, const Mirror& mirror, const CoreCable& c, Complex lambda, const ComplexVector& q) {
+  auto at = g.nodal<Complex>(c.kappa, q, Eigen::Vector4cd::Zero());
+  const Eigen::VectorXd size = at.U.cwiseAbs2() + at.V.cwiseAbs2();
+  Eigen::Index i;
+  size.maxCoeff(&i);
+  const Complex lead = std::abs(at.V[i]) > std::abs(at.U[i]) ? at.V[i] : at.U[i];
+  const Complex scale = std::conj(lead) / std::abs(lead) / std::sqrt(size[i]);
+  for (ComplexVector* v : {&at.U, &at.V, &at.N}) *v *= scale;
+  DampedMode mode{lambda, 0.0, field_of<Complex>(g.mesh(), at, lambda * lambda + c.eta1 * lambda, lambda * lambda + c.eta2 * lambda)};
+  mode.odd_share = mirror.odd_share(mode.field, Quantity::V);
+  return mode;
+}
+
+}  // namespace
+
+std::complex<double> damped_root(double omega, double eta) {
+  const double d = omega * omega - 0.25 * eta * eta;
+  return d >= 0.0 ? Complex(-0.5 * eta, std::sqrt(d)) : Complex(-0.5 * eta + std::sqrt(-d), 0.0);
+}
+
+DampedSet damped_modes(const CoreCable& c, const ModeOptions& o) {
+  ModeOptions undamped = o;
+  undamped.verify = false;
+  undamped.shapes = false;
+  const ModeSet set = in_plane_modes(c, undamped);  // checks, and tells how many functions resolve that many modes
+  DampedSet out;
+  out.functions = set.functions;
+  out.resolved = set.resolved;
+  const InPlaneGalerkin g(c.x1, c.x2, set.functions);
+  const QuadraticProblem problem{g.stiffness(c.kappa), g.mass(c.kappa, c.eta1, c.eta2), g.mass(c.kappa)};
+  const Mirror mirror(g.mesh());
+  std::vector<Complex> oscillating;
+  for (const Complex lambda : problem.roots())
+    if (lambda.imag() > 1e-9 * std::abs(lambda)) oscillating.push_back(lambda);
+    else out.overdamped.push_back(lambda.real());
+  std::sort(out.overdamped.begin(), out.overdamped.end(), std::greater<>());
+  std::sort(oscillating.begin(), oscillating.end(), [](Complex a, Complex b) { return a.imag() < b.imag(); });
+  if (oscillating.size() > std::size_t(o.count)) oscillating.resize(std::size_t(o.count));
+  for (Complex lambda : oscillating) {
+    const ComplexVector q = problem.polish(lambda);
+    if (o.shapes) out.modes.push_back(mode_of(g, mirror, c, lambda, q));
+    else out.modes.push_back({lambda, 0.0, {}});
+  }
+  return out;
+}
+
+}  // namespace whirl::models::catenary

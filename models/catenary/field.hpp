@@ -1,0 +1,99 @@
+#pragma once
+/// Displacements and forces along the cable as Legendre series in x: known at any point, not only where they were computed.
+///
+/// In plane the columns are U, V, N, T; N/c is the change of slope. Out of plane they are W, W_x. Real for modes, complex for damped modes and
+/// forced motion. Units as in galerkin.hpp: displacements in a, forces in H.
+///
+///     Field<double> f = ...;
+///     auto v = f.at(x, Quantity::V);                 // x between f.x1 and f.x2
+
+#include "models/catenary/galerkin.hpp"
+
+namespace whirl::models::catenary {
+
+enum class Quantity { U = 0, V = 1, N = 2, T = 3, W = 0, W_slope = 1 };
+
+template <class S>
+using ColumnVector = Eigen::Matrix<S, Eigen::Dynamic, 1>;
+
+template <class S>
+struct Field {
+  double x1 = 0.0, x2 = 0.0;
+  Eigen::Matrix<S, Eigen::Dynamic, Eigen::Dynamic> coefficients;  ///< Legendre coefficients, one column a quantity
+
+  ColumnVector<S> at(In x, Quantity quantity) const { return table(x).template cast<S>() * coefficients.col(static_cast<int>(quantity)); }
+  /// All columns at the points x.
+  Eigen::Matrix<S, Eigen::Dynamic, Eigen::Dynamic> at(In x) const { return table(x).template cast<S>() * coefficients; }
+  /// One point, by Clenshaw's recurrence: nothing is allocated.
+  S at(double x, Quantity quantity) const {
+    const double t = (2.0 * x - x1 - x2) / (x2 - x1);
+    const auto a = coefficients.col(static_cast<int>(quantity));
+    S b1(0.0), b2(0.0);
+    for (Eigen::Index k = a.size() - 1; k > 0; --k) {
+      const double n = static_cast<double>(k);
+      const S b = a[k] + ((2.0 * n + 1.0) / (n + 1.0) * t) * b1 - ((n + 1.0) / (n + 2.0)) * b2;
+      b2 = b1;
+      b1 = b;
+    }
+    return a[0] + t * b1 - 0.5 * b2;
+  }
+
+ private:
+  Matrix table(In x) const { return legendre_values(((2.0 * x.array() - x1 - x2) / (x2 - x1)).matrix(), static_cast<int>(coefficients.rows())); }
+};
+
+/// The field behind U, V, N at the mesh points. The tension follows from the balance along the cable, its constant from the balance across:
+///
+///     T_x = L1 c U + N/c,     int [N p_x + (L2 c V - T/c) p] dx = 0 with p = phi_0
+///
+/// so that it is as accurate for an inextensible cable, whose tension is a reaction.
+template <class S>
+Field<S> field_of(const Mesh& mesh, const InPlaneGalerkin::Nodal<S>& at, S L1, S L2) {
+  const auto n = mesh.t.size();
+  Field<S> f{mesh.x1, mesh.x2, {}};
+  f.coefficients.setZero(n, 4);
+  f.coefficients.col(0) = mesh.template project<S>(at.U);
+  f.coefficients.col(1) = mesh.template project<S>(at.V);
+  f.coefficients.col(2) = mesh.template project<S>(at.N);
+  const ColumnVector<S> slope = L1 * mesh.c.cwiseProduct(at.U) + at.N.cwiseQuotient(mesh.c.template cast<S>());
+  const ColumnVector<S> a = mesh.template project<S>(slope);
+  ColumnVector<S> T = ColumnVector<S>::Zero(n);
+  for (Eigen::Index k = 0; k + 1 < n; ++k) {  // m int P_k = m (P_{k+1} - P_{k-1}) / (2 k + 1)
+    const S part = mesh.m * a[k] / (2.0 * static_cast<double>(k) + 1.0);
+    T[k + 1] += part;
+    T[k == 0 ? 0 : k - 1] += k == 0 ? part : -part;
+  }
+  const Vector p = 1.0 - mesh.t.array().square(), px = -2.0 / mesh.m * mesh.t;
+  const ColumnVector<S> T_at = mesh.legendre.leftCols(n).template cast<S>() * T;
+  const Vector p_over_c = mesh.weight.cwiseProduct(p).cwiseQuotient(mesh.c);
+  const Vector pc = mesh.weight.cwiseProduct(p).cwiseProduct(mesh.c), wpx = mesh.weight.cwiseProduct(px);
+  const S across = L2 * (pc.template cast<S>().transpose() * at.V)(0) + (wpx.template cast<S>().transpose() * at.N)(0);
+  T[0] += (across - (p_over_c.template cast<S>().transpose() * T_at)(0)) / p_over_c.sum();
+  f.coefficients.col(3) = T;
+  return f;
+}
+
+/// Parity of a motion on a cable that is not symmetric itself, told in the travel time of a transverse wave, tau = int sqrt(cosh x) dx, with the
+/// amplitude such a wave keeps, V (cosh x)^(1/4): short waves are symmetric or antisymmetric about the middle in tau on any cable.
+class Mirror {
+ public:
+  explicit Mirror(const Mesh& mesh);
+  /// Share of int sqrt(c) V^2 dtau in the odd part: 0 symmetric, 1 antisymmetric.
+  template <class S>
+  double odd_share(const Field<S>& f, Quantity quantity) const {
+    const ColumnVector<S> v = legendre_.leftCols(f.coefficients.rows()).template cast<S>() * f.coefficients.col(static_cast<int>(quantity));
+    double odd = 0.0, all = 0.0;
+    for (Eigen::Index i = 0; i < v.size(); ++i) {
+      const S here = amplitude_[i] * v[i], there = amplitude_[v.size() - 1 - i] * v[v.size() - 1 - i];
+      odd += weight_[i] * std::norm(std::complex<double>(0.5 * (here - there)));
+      all += weight_[i] * std::norm(std::complex<double>(here));
+    }
+    return all > 0.0 ? odd / all : 0.0;
+  }
+
+ private:
+  Vector weight_, amplitude_;
+  Matrix legendre_;
+};
+
+}  // namespace whirl::models::catenary

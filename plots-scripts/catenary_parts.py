@@ -1,0 +1,46 @@
+"""What the figures of hanging cables share: the cable's line at scale, tables in order of mode or height, words about the cable."""
+import numpy as np
+
+from figures_common import NB, number
+
+KINDS = {"symmetric": "-", "antisymmetric": (0, (4, 2)), "hybrid": (0, (1, 1.2))}
+
+
+def in_order(group, prefix):
+    """(number, name) of the subgroups prefix<number>, by number."""
+    found = []
+    for name in group.groups:
+        try:
+            found.append((float(name[len(prefix):]), name))
+        except ValueError:
+            continue
+    return sorted(found)
+
+
+def cable_words(result):
+    """Span, height, sag and flexibility of the study's cable."""
+    c = result.group("cable").columns
+    words = [f"span {number(scalar(c, 'span'), 4)}{NB}m", f"height difference {number(scalar(c, 'height_difference'), 4)}{NB}m",
+             f"length {number(scalar(c, 'length'), 4)}{NB}m", rf"$b/\sqrt{{l^2-h^2}}$ = {number(scalar(c, 'sag_parameter'), 4)}"]
+    kappa = scalar(c, "flexibility")
+    words.append(rf"$\kappa$ = $H/EA$ = {number(kappa, 3)}" if kappa > 0 else "inextensible")
+    return ", ".join(w.replace(" ", NB) for w in words)
+
+
+def scalar(columns, name):
+    return float(np.ravel(columns[name])[0])
+
+
+def sentence(result, words):
+    partial = "" if result.group("study").attributes.get("outcome") == "complete" else " Partial result."
+    return f"{words}{partial}"
+
+
+def moved(table, columns, scale):
+    """The cable's line displaced by scale times (U, V): x, y in metres."""
+    x, y = table.column("x"), table.column("y")
+    slope = np.gradient(y, x)
+    cosine = 1 / np.hypot(1, slope)
+    sine = slope * cosine
+    U, V = (table.column(c) for c in columns)
+    return x + scale * (U * cosine - V * sine), y + scale * (U * sine + V * cosine)

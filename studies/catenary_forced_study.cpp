@@ -1,0 +1,290 @@
+#include "studies/catenary_forced_study.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "core/parallel.hpp"
+#include "models/catenary/forced.hpp"
+#include "studies/catenary_keys.hpp"
+#include "studies/common_keys.hpp"
+
+namespace whirl::studies {
+namespace {
+
+using namespace models::catenary;
+using Complex = std::complex<double>;
+
+constexpr const char* directions[] = {"tangential", "normal", "out_of_plane", "horizontal", "vertical"};
+
+struct Setup {
+  HangingCable cable;
+  CoreCable core;
+  double unit;                       // sqrt(g/a)
+  std::vector<EndMotion> harmonics;  // of the base frequency, in a
+  std::vector<double> sweep, at;     // rad/s
+};
+
+Schema schema() {
+  Schema s("catenary-forced", "a hanging cable of any sag whose end moves periodically: motion and tension along it, resonances");
+  add_hanging_cable_keys(s, true);
+  s.add({.name = "end_motion.end", .description = "the end that moves", .default_value = std::string("upper"), .choices = {"lower", "upper"}});
+  for (const char* d : directions) {
+    s.add({.name = fmt::format("end_motion.{}", d),
+           .unit = "m",
+           .description = fmt::format("amplitude of its {} motion at the frequency, at twice it, ...", d),
+           .default_value = std::vector<double>{},
+           .example = std::string_view(d) == "horizontal" ? std::optional<Value>(std::vector<double>{0.5}) : std::nullopt});
+    s.add({.name = fmt::format("end_motion.{}_phase_deg", d),
+           .unit = "deg",
+           .description = "phase of each of these: amplitude cos(k omega t + phase)",
+           .default_value = std::vector<double>{}});
+  }
+  s.add({.name = "response.range",
+         .unit = "rad/s",
+         .description = "frequencies of the resonance diagram",
+         .default_value = std::vector<double>{},
+         .required = true,
+         .lower = 0.0,
+         .closed_lower = true,
+         .min_items = 2,
+         .max_items = 2,
+         .example = Value{std::vector<double>{0.0, 4.0}}});
+  s.add({.name = "response.points",
+         .description = "evenly spaced frequencies; more are set about the natural ones",
+         .default_value = std::int64_t{400},
+         .lower = 2,
+         .upper = 1e6,
+         .closed_lower = true,
+         .closed_upper = true});
+  s.add({.name = "response.at",
+         .unit = "rad/s",
+         .description = "frequencies at which the motion along the cable is written",
+         .default_value = std::vector<double>{},
+         .lower = 0.0,
+         .closed_lower = true});
+  s.add({.name = "response.cable_points",
+         .description = "points along the cable in these tables",
+         .default_value = std::int64_t{201},
+         .lower = 2,
+         .upper = 100000,
+         .closed_lower = true,
+         .closed_upper = true});
+  return s;
+}
+
+std::vector<EndMotion> harmonics_of(const Configuration& c, const HangingCable& cable) {
+  const bool upper = c.text("end_motion.end") == "upper";
+  const double x = upper ? cable.shape.x2 : cable.shape.x1;
+  std::vector<EndMotion> harmonics;
+  for (int d = 0; d < 5; ++d) {
+    const std::string key = fmt::format("end_motion.{}", directions[d]);
+    const auto& amplitude = c.numbers(key);
+    const auto& phase = c.numbers(key + "_phase_deg");
+    if (phase.size() > amplitude.size()) throw c.error(key + "_phase_deg", fmt::format("has more entries than {}", key));
+    if (amplitude.size() > harmonics.size()) harmonics.resize(amplitude.size());
+    for (std::size_t k = 0; k < amplitude.size(); ++k) {
+      const Complex a = std::polar(1.0, k < phase.size() ? phase[k] * std::numbers::pi / 180.0 : 0.0) * amplitude[k] / cable.shape.a;
+      EndMotion& e = harmonics[k];
+      const TangentNormal tn = d == 0 ? TangentNormal{a, 0.0} : d == 1 ? TangentNormal{0.0, a} : turned(x, d == 3 ? a : 0.0, d == 4 ? a : 0.0);
+      if (d == 2) (upper ? e.W2 : e.W1) += a;
+      else {
+        (upper ? e.U2 : e.U1) += tn.tangential;
+        (upper ? e.V2 : e.V1) += tn.normal;
+      }
+    }
+  }
+  if (harmonics.empty())
+    throw InputError(fmt::format("{}: [end_motion] needs an amplitude: tangential, normal, out_of_plane, horizontal or vertical", c.source()));
+  return harmonics;
+}
+
+Setup setup(const Configuration& c) {
+  const HangingCable cable = hanging_cable_of(c);
+  Setup s{cable, core_of(cable), frequency_unit(cable), harmonics_of(c, cable), {}, c.numbers("response.at")};
+  const auto& range = c.numbers("response.range");
+  if (!(range[0] < range[1])) throw c.error("response.range", "must be increasing");
+  const auto points = static_cast<int>(c.integer("response.points"));
+  for (int i = 0; i < points; ++i) s.sweep.push_back(range[0] + (range[1] - range[0]) * i / (points - 1));
+  double top = range[1];
+  for (const double w : s.at) top = std::max(top, w * static_cast<double>(s.harmonics.size()));
+  try {
+    (void)ForcedSolver(s.core, top / s.unit);
+  } catch (const std::invalid_argument& e) {
+    throw c.error("response.range", e.what());
+  }
+  return s;
+}
+
+std::vector<std::string> check(const Configuration& c) { return hanging_cable_warnings(setup(c).cable); }
+
+// Natural frequencies within the sweep, in rad/s, and further points of the sweep about them.
+std::vector<double> natural(Setup& s, bool lateral) {
+  std::vector<double> omega;
+  for (int count = 8;; count *= 2) {
+    const ModeOptions options{.count = std::min(count, 200), .shapes = false, .verify = false};
+    const ModeSet set = lateral ? out_of_plane_modes(s.core, options) : in_plane_modes(s.core, options);
+    omega.clear();
+    for (const auto& mode : set.modes) omega.push_back(mode.omega * s.unit);
+    if (omega.back() > s.sweep.back() || count >= 200) break;
+  }
+  std::erase_if(omega, [&](double w) { return w > s.sweep.back() || w < s.sweep.front(); });
+  return omega;
+}
+
+void refine(Setup& s, const std::vector<double>& omega) {
+  const double low = s.sweep.front(), high = s.sweep.back();
+  for (const double w : omega)
+    for (double d = 3e-4; d < 0.03; d *= 1.6)
+      for (const double near : {w * (1.0 - d), w * (1.0 + d)})
+        if (near > low && near < high) s.sweep.push_back(near);
+  std::sort(s.sweep.begin(), s.sweep.end());
+}
+
+struct Row {
+  Peak T, U, V, W;
+  TotalTension total;
+  double T_lower, T_upper;
+};
+
+Row row_of(const PeakFinder& peaks, const ForcedMotion& m) {
+  const auto& f = m.in_plane;
+  return {peaks.largest(f, Quantity::T), peaks.largest(f, Quantity::U),     peaks.largest(f, Quantity::V),    peaks.largest(m.lateral, Quantity::W),
+          peaks.total_tension(f),        std::abs(f.at(f.x1, Quantity::T)), std::abs(f.at(f.x2, Quantity::T))};
+}
+
+double arc(const Setup& s, double x) { return s.cable.shape.a * (std::sinh(x) - std::sinh(s.cable.shape.x1)); }
+
+// First-harmonic response over the sweep.
+std::vector<Row> write_resonance(ResultFile& file, const Setup& s, const ForcedSolver& solver) {
+  const PeakFinder peaks(solver.mesh());
+  std::vector<Row> rows(s.sweep.size());
+  parallel_for(rows.size(), [&](std::size_t i) {
+    if (!interrupted) rows[i] = row_of(peaks, solver.at(s.sweep[i] / s.unit, s.harmonics[0]));
+  });
+  const double a = s.cable.shape.a, H = horizontal_tension(s.cable);
+  std::vector<Column> t;
+  const auto add = [&](const char* name, const char* unit, const char* description, auto value) {
+    Column c{name, unit, description, {}};
+    for (std::size_t i = 0; i < rows.size(); ++i) c.values.push_back(value(i));
+    t.push_back(std::move(c));
+  };
+  add("omega", "rad/s", "frequency of the end motion", [&](auto i) { return s.sweep[i]; });
+  add("frequency", "Hz", "omega / 2 pi", [&](auto i) { return s.sweep[i] / (2.0 * std::numbers::pi); });
+  add("omega_ratio", "-", "omega / sqrt(g/a)", [&](auto i) { return s.sweep[i] / s.unit; });
+  add("tension", "N", "largest dynamic tension along the cable", [&](auto i) { return H * rows[i].T.value; });
+  add("tension_at", "m", "where, arc length from the lower end", [&](auto i) { return arc(s, rows[i].T.x); });
+  add("tension_lower", "N", "dynamic tension at the lower end", [&](auto i) { return H * rows[i].T_lower; });
+  add("tension_upper", "N", "dynamic tension at the upper end", [&](auto i) { return H * rows[i].T_upper; });
+  add("total_max", "N", "largest static and dynamic tension", [&](auto i) { return H * rows[i].total.largest.value; });
+  add("total_min", "N", "smallest static less dynamic tension; below 0 the cable goes slack",
+      [&](auto i) { return H * rows[i].total.smallest.value; });
+  add("U", "m", "largest tangential displacement", [&](auto i) { return a * rows[i].U.value; });
+  add("V", "m", "largest normal displacement", [&](auto i) { return a * rows[i].V.value; });
+  add("W", "m", "largest displacement out of plane", [&](auto i) { return a * rows[i].W.value; });
+  file.table("/resonance", t);
+  return rows;
+}
+
+void add_amplitude(std::vector<Column>& t, const char* name, const char* unit, const char* description, const Eigen::VectorXcd& v) {
+  t.push_back({name, unit, fmt::format("amplitude of {}", description), to_std(v.cwiseAbs())});
+  t.push_back({fmt::format("{}_phase", name), "rad", "phase: amplitude cos(omega t + phase)", to_std(v.array().arg().matrix())});
+}
+
+// The motion along the cable at one base frequency: each harmonic, and what they add up to over a period.
+void write_motion(ResultFile& file, const Setup& s, const ForcedSolver& solver, double omega, int points) {
+  const Along line = along(s.cable, points);
+  const double a = s.cable.shape.a, H = horizontal_tension(s.cable);
+  const Vector c = line.x.array().cosh();
+  const std::string group = fmt::format("/motions/w{:.6g}", omega);
+  std::vector<ForcedMotion> parts;
+  for (std::size_t k = 0; k < s.harmonics.size(); ++k) {
+    const ForcedMotion m = solver.at(double(k + 1) * omega / s.unit, s.harmonics[k]);
+    parts.push_back(m);
+    auto t = line.columns;
+    const Eigen::MatrixXcd f = m.in_plane.at(line.x), lateral = m.lateral.at(line.x);
+    add_amplitude(t, "U", "m", "tangential displacement", a * f.col(0));
+    add_amplitude(t, "V", "m", "normal displacement", a * f.col(1));
+    add_amplitude(t, "W", "m", "displacement out of plane", a * lateral.col(0));
+    add_amplitude(t, "rotation", "rad", "change of slope", f.col(2).cwiseQuotient(c.cast<Complex>()));
+    add_amplitude(t, "tension", "N", "dynamic tension", H * f.col(3));
+    const std::string path = fmt::format("{}/h{}", group, k + 1);
+    file.table(path, t);
+    file.attribute(path, "omega", double(k + 1) * omega);
+  }
+  constexpr int samples = 256;
+  const double period = omega > 0.0 ? 2.0 * std::numbers::pi * s.unit / omega : 1.0;
+  const Vector times = Vector::LinSpaced(samples + 1, 0.0, period);
+  const Matrix T = H * history(parts, Quantity::T, line.x, times);
+  auto t = line.columns;
+  t.push_back({"static_tension", "N", "H cosh x", to_std(H * c)});
+  t.push_back({"total_max", "N", "largest tension over a period, 256 instants", to_std(H * c + T.rowwise().maxCoeff())});
+  t.push_back({"total_min", "N", "smallest tension over a period", to_std(H * c + T.rowwise().minCoeff())});
+  file.table(group + "/envelope", t);
+  file.attribute(group, "omega", omega);
+  file.table(group + "/history", {{"t", "s", "time", to_std(times / s.unit)},
+                                  {"tension_lower", "N", "dynamic tension at the lower end", to_std(T.row(0).transpose())},
+                                  {"tension_upper", "N", "dynamic tension at the upper end", to_std(T.row(T.rows() - 1).transpose())}});
+}
+
+void write_natural(ResultFile& file, const std::vector<double> omega[2]) {
+  std::vector<Column> t{{"omega", "rad/s", "natural frequency without drag within the range", {}}};
+  TextColumn plane{"plane", "in_plane or out_of_plane", {}};
+  for (int lateral = 0; lateral < 2; ++lateral)
+    for (const double w : omega[lateral]) {
+      t[0].values.push_back(w);
+      plane.values.emplace_back(lateral ? "out_of_plane" : "in_plane");
+    }
+  file.table("/natural", t, {plane});
+}
+
+ExitStatus run(const Configuration& c, RunContext& context) {
+  Setup s = setup(c);
+  for (const auto& w : hanging_cable_warnings(s.cable)) context.warn(w);
+  const std::vector<double> omega[2] = {natural(s, false), natural(s, true)};
+  for (const auto& w : omega) refine(s, w);
+  double top = s.sweep.back();
+  for (const double w : s.at) top = std::max(top, w * static_cast<double>(s.harmonics.size()));
+  const ForcedSolver solver(s.core, top / s.unit);
+  ResultFile file(context.output);
+  write_study(file, c);
+  write_hanging_cable(file, s.cable);
+  write_natural(file, omega);
+  const auto rows = write_resonance(file, s, solver);
+  file.flush();
+  for (const double w : s.at)
+    if (!interrupted) write_motion(file, s, solver, w, int(c.integer("response.cable_points")));
+  std::vector<std::string> failures;
+  const double H = horizontal_tension(s.cable);
+  std::size_t highest = 0, slack = 0;
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    if (!std::isfinite(rows[i].T.value))
+      failures.push_back(fmt::format("no finite motion at {:.10g} rad/s: a natural frequency without drag", s.sweep[i]));
+    else if (!(rows[i].T.value <= rows[highest].T.value)) highest = i;
+    if (rows[i].total.smallest.value < 0.0) ++slack;
+  }
+  if (slack > 0) context.warn(fmt::format("the cable would go slack at {} of {} frequencies: linear theory ends there", slack, rows.size()));
+  if (context.json)
+    fmt::print("{{\n  \"largest\": {{\"omega\": {:.17g}, \"tension\": {:.17g}, \"s\": {:.17g}}},\n  \"natural\": [{}],\n  \"points\": {}\n}}\n",
+               s.sweep[highest], H * rows[highest].T.value, arc(s, rows[highest].T.x), fmt::join(omega[0], ", "), rows.size());
+  if (!context.quiet) {
+    fmt::print(stderr, "natural frequencies in plane [rad/s]: {:.8g}\n", fmt::join(omega[0], ", "));
+    fmt::print(stderr, "largest dynamic tension {:.6g} N at {:.6g} rad/s, {:.4g} m from the lower end; static at the upper end {:.6g} N\n",
+               H * rows[highest].T.value, s.sweep[highest], arc(s, rows[highest].T.x), H * std::cosh(s.cable.shape.x2));
+    for (const double w : s.at) {
+      const ForcedMotion m = solver.at(w / s.unit, s.harmonics[0]);
+      const Peak T = PeakFinder(solver.mesh()).largest(m.in_plane, Quantity::T);
+      fmt::print(stderr, "at {:.6g} rad/s: dynamic tension up to {:.8g} N, {:.4g} m from the lower end\n", w, H * T.value, arc(s, T.x));
+    }
+  }
+  return finish_tables(file, context, failures);
+}
+
+}  // namespace
+
+StudyKind catenary_forced_study() { return {schema(), run, check}; }
+
+}  // namespace whirl::studies

@@ -1,0 +1,282 @@
+#include "studies/catenary_modes_study.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "core/parallel.hpp"
+#include "models/catenary/backbone.hpp"
+#include "models/catenary/gale_series.hpp"
+#include "studies/catenary_keys.hpp"
+#include "studies/common_keys.hpp"
+
+namespace whirl::studies {
+namespace {
+
+using namespace models::catenary;
+
+Schema schema() {
+  Schema s("catenary-modes", "natural frequencies and modes of a hanging cable of any sag, in plane and out of plane");
+  add_hanging_cable_keys(s, true);
+  const auto count = [&](const char* name, const char* description, std::int64_t value) {
+    s.add({.name = name, .description = description, .default_value = value, .lower = 0, .upper = 300, .closed_lower = true, .closed_upper = true});
+  };
+  count("modes.in_plane", "modes wanted in plane", 8);
+  count("modes.out_of_plane", "modes wanted out of plane", 8);
+  s.add({.name = "modes.points",
+         .description = "points along the cable at which shapes are written; 0: no shapes",
+         .default_value = std::int64_t{201},
+         .lower = 0,
+         .upper = 100000,
+         .closed_lower = true,
+         .closed_upper = true});
+  s.add({.name = "series.compare",
+         .description = "solve again by the source's series, inextensible cable with |xi| < 4 at both ends, and compare",
+         .default_value = false});
+  s.add({.name = "sweep.sag_parameter",
+         .description = "range of b/sqrt(l^2 - h^2), 1 taut, over which frequencies in sqrt(g/a) are tabulated",
+         .default_value = std::vector<double>{0.5, 0.98},
+         .lower = 0.0,
+         .upper = 1.0,
+         .min_items = 2,
+         .max_items = 2});
+  s.add({.name = "sweep.height_over_span",
+         .description = "h/b of the cables of the sweep; empty: no sweep",
+         .default_value = std::vector<double>{},
+         .lower = 0.0,
+         .upper = 100.0,
+         .closed_lower = true,
+         .example = Value{std::vector<double>{0.0, 0.5}}});
+  s.add({.name = "sweep.points",
+         .description = "cables of each sweep",
+         .default_value = std::int64_t{60},
+         .lower = 2,
+         .upper = 100000,
+         .closed_lower = true,
+         .closed_upper = true});
+  return s;
+}
+
+HangingCable setup(const Configuration& c) {
+  const auto& range = c.numbers("sweep.sag_parameter");
+  if (!(range[0] < range[1])) throw c.error("sweep.sag_parameter", "must be increasing");
+  for (const double h : c.numbers("sweep.height_over_span")) try {
+      for (const double sag : range) (void)unit_geometry(half_width_of(sag), h);
+    } catch (const std::invalid_argument& e) {
+      throw c.error("sweep.height_over_span", e.what());
+    }
+  const HangingCable cable = hanging_cable_of(c);
+  if (c.flag("series.compare")) try {
+      if (core_of(cable).kappa > 0.0) throw std::invalid_argument("the series method is for inextensible cables: leave out cable.axial_stiffness");
+      (void)series_determinant(cable.shape.x1, cable.shape.x2, 1.0, Plane::in_plane);
+    } catch (const std::invalid_argument& e) {
+      throw c.error("series.compare", e.what());
+    }
+  return cable;
+}
+
+std::vector<std::string> check(const Configuration& c) { return hanging_cable_warnings(setup(c)); }
+
+const char* plane_name(bool lateral) { return lateral ? "out_of_plane" : "in_plane"; }
+
+struct Found {
+  ModeSet set;
+  std::vector<std::complex<double>> lambda;  // with drag, in sqrt(g/a)
+};
+
+Found find(const CoreCable& core, int count, bool lateral) {
+  const ModeOptions options{.count = count};
+  Found f{lateral ? out_of_plane_modes(core, options) : in_plane_modes(core, options), {}};
+  if (lateral && core.eta3 > 0.0)
+    for (const auto& mode : f.set.modes) f.lambda.push_back(damped_root(mode.omega, core.eta3));
+  if (!lateral && (core.eta1 > 0.0 || core.eta2 > 0.0)) {
+    const DampedSet damped = damped_modes(core, {.count = count, .functions = f.set.functions, .shapes = false});
+    for (const auto& mode : damped.modes) f.lambda.push_back(mode.lambda);
+  }
+  return f;
+}
+
+std::vector<Column> mode_columns(const Found& found, double unit) {
+  std::vector<Column> t{
+      {"mode", "-", "number", {}},
+      {"omega", "rad/s", "natural frequency without drag", {}},
+      {"frequency", "Hz", "omega / 2 pi", {}},
+      {"omega_ratio", "-", "omega / sqrt(g/a)", {}},
+      {"odd_share", "-", "share of the normal (lateral) displacement squared that is odd about the middle, in travel time of a wave", {}},
+      {"elastic_share", "-", "share of the potential energy in stretching", {}}};
+  for (std::size_t i = 0; i < found.set.modes.size(); ++i) {
+    const Mode& mode = found.set.modes[i];
+    const double values[] = {double(i + 1), mode.omega * unit, mode.omega * unit / (2.0 * std::numbers::pi),
+                             mode.omega,    mode.odd_share,    mode.elastic_share};
+    for (std::size_t k = 0; k < t.size(); ++k) t[k].values.push_back(values[k]);
+  }
+  if (found.lambda.empty()) return t;
+  Column decay{"decay", "1/s", "decay rate of the damped mode, -Re lambda", {}}, damped{"damped_omega", "rad/s", "Im lambda", {}};
+  for (std::size_t i = 0; i < found.set.modes.size(); ++i) {
+    const bool known = i < found.lambda.size();
+    decay.values.push_back(known ? -found.lambda[i].real() * unit : std::nan(""));
+    damped.values.push_back(known ? found.lambda[i].imag() * unit : std::nan(""));
+  }
+  t.push_back(decay);
+  t.push_back(damped);
+  return t;
+}
+
+// How the frequencies out of plane depend on the amplitude.
+void add_backbone(std::vector<Column>& t, const HangingCable& cable, CoreCable core, int count) {
+  core.kappa = std::max(core.kappa, 1e-7);  // stands for an inextensible cable
+  Column curvature{"curvature", "1/m^2", "relative change of the frequency per square of the largest displacement, to second order", {}};
+  Column detuning{
+      "detuning", "-", "relative distance of twice the frequency from the nearest one in plane; small: internal resonance, curvature fails", {}};
+  const double a = cable.shape.a;
+  for (int mode = 1; mode <= count; ++mode) {
+    Backbone b;
+    if (mode <= 8) b = lateral_backbone(core, mode);
+    else b.curvature = b.detuning = std::nan("");
+    curvature.values.push_back(b.curvature / (a * a));
+    detuning.values.push_back(b.detuning);
+  }
+  t.push_back(curvature);
+  t.push_back(detuning);
+}
+
+void write_shapes(ResultFile& file, const HangingCable& cable, const Found& found, bool lateral, int points) {
+  const Along line = along(cable, points);
+  const double H = horizontal_tension(cable), a = cable.shape.a;
+  const Vector c = line.x.array().cosh();
+  for (std::size_t i = 0; i < found.set.modes.size(); ++i) {
+    const Matrix f = found.set.modes[i].field.at(line.x);
+    auto columns = line.columns;
+    if (lateral) columns.push_back({"W", "m", "out of plane displacement, largest 1 m", to_std(f.col(0))});
+    else {
+      columns.push_back({"U", "m", "tangential displacement; the largest displacement is 1 m", to_std(f.col(0))});
+      columns.push_back({"V", "m", "normal displacement", to_std(f.col(1))});
+      columns.push_back({"rotation", "rad", "change of slope, to first order", to_std(f.col(2).cwiseQuotient(c) / a)});
+      columns.push_back({"tension", "N", "dynamic tension, to first order", to_std(f.col(3) * (H / a))});
+    }
+    file.table(fmt::format("/shapes/{}/mode{}", plane_name(lateral), i + 1), columns);
+  }
+}
+
+// Frequencies against the sag parameter at one h/b.
+void write_sweep(ResultFile& file, const Configuration& c, double h, bool lateral, std::vector<std::string>& failures) {
+  const int points = int(c.integer("sweep.points")), count = int(c.integer(lateral ? "modes.out_of_plane" : "modes.in_plane"));
+  if (count == 0) return;
+  const auto& range = c.numbers("sweep.sag_parameter");
+  std::vector<Column> t{{"sag_parameter", "-", "b / sqrt(l^2 - h^2)", std::vector<double>(std::size_t(points))}};
+  for (int k = 1; k <= count; ++k) t.push_back({fmt::format("w{}", k), "-", "omega / sqrt(g/a)", std::vector<double>(std::size_t(points))});
+  if (lateral)
+    t.push_back({"pendulum", "-", "the rigid cable swinging about its chord, Rayleigh's estimate of w1", std::vector<double>(std::size_t(points))});
+  std::atomic<int> unresolved{0};
+  parallel_for(std::size_t(points), [&](std::size_t i) {
+    const double sag = range[0] + (range[1] - range[0]) * double(i) / (points - 1);
+    const Geometry g = unit_geometry(half_width_of(sag), h);
+    const CoreCable core{.x1 = g.x1, .x2 = g.x2};
+    const ModeOptions options{.count = count, .shapes = false};
+    const ModeSet set = lateral ? out_of_plane_modes(core, options) : in_plane_modes(core, options);
+    if (!set.complete()) ++unresolved;
+    t[0].values[i] = sag;
+    if (lateral) t.back().values[i] = pendulum_estimate(g);
+    for (std::size_t k = 0; k < std::size_t(count); ++k) t[k + 1].values[i] = k < set.modes.size() ? set.modes[k].omega : std::nan("");
+  });
+  const std::string group = fmt::format("/sweep/{}/h{:g}", plane_name(lateral), h);
+  file.table(group, t);
+  file.attribute(group, "height_over_span", h);
+  if (unresolved > 0) failures.push_back(fmt::format("{}: {} of {} cables could not be resolved", group, unresolved.load(), points));
+}
+
+// The series method beside the spectral frequencies; modes it refuses are left out.
+void write_series(ResultFile& file, const HangingCable& cable, int count, bool lateral, RunContext& context, std::vector<std::string>& failures) {
+  const SeriesModes s = series_modes(cable.shape.x1, cable.shape.x2, count, lateral ? Plane::out_of_plane : Plane::in_plane);
+  std::vector<Column> t{{"mode", "-", "number", {}},
+                        {"omega_ratio", "-", "omega / sqrt(g/a) by series", {}},
+                        {"difference", "-", "relative, from the spectral solver", {}},
+                        {"digits_lost", "-", "decimal digits cancelled in the sums", {}}};
+  if (!s.agrees())
+    failures.push_back(fmt::format("series {}: {} modes missing, {} sign changes too many", plane_name(lateral), s.missing, s.spurious));
+  else
+    for (std::size_t k = 0; k < s.omega.size(); ++k) {
+      const double row[] = {double(k + 1), s.omega[k], s.omega[k] / s.spectral[k] - 1.0, s.digits_lost[k]};
+      for (std::size_t i = 0; i < t.size(); ++i) t[i].values.push_back(row[i]);
+    }
+  if (s.refused > 0)
+    context.warn(fmt::format("series {}: the {} highest modes are refused, their sums lose more than nine digits", plane_name(lateral), s.refused));
+  file.table(fmt::format("/series/{}", plane_name(lateral)), t);
+  if (!context.quiet && s.agrees() && !s.omega.empty())
+    fmt::print(stderr, "series {}: {} modes, {} terms, largest difference {:.1e}, {:.1f} digits lost at most\n", plane_name(lateral), s.omega.size(),
+               s.terms, s.worst_difference(), *std::max_element(s.digits_lost.begin(), s.digits_lost.end()));
+}
+
+std::string text(const Found& found, double unit, bool lateral) {
+  std::string out = fmt::format("{:<13} {:>4} {:>18} {:>16} {:>16} {:>9} {:>9}  {}\n", lateral ? "out of plane" : "in plane", "mode", "omega [rad/s]",
+                                "frequency [Hz]", "omega/sqrt(g/a)", "odd", "elastic", "kind");
+  for (std::size_t i = 0; i < found.set.modes.size(); ++i) {
+    const Mode& m = found.set.modes[i];
+    out += fmt::format("{:<13} {:>4} {:>18.11g} {:>16.9g} {:>16.11g} {:>9.4f} {:>9.4f}  {}\n", "", i + 1, m.omega * unit,
+                       m.omega * unit / (2.0 * std::numbers::pi), m.omega, m.odd_share, m.elastic_share, to_string(m.kind));
+  }
+  return out + fmt::format("{:<13} {} below {:.8g} rad/s by inertia, {} listed{}\n", "", found.set.counted, found.set.counted_below * unit,
+                           found.set.expected, found.set.complete() ? ": none is missing" : "");
+}
+
+std::string json(const Found found[2], double unit) {
+  std::string rows;
+  for (int lateral = 0; lateral < 2; ++lateral)
+    for (std::size_t i = 0; i < found[lateral].set.modes.size(); ++i) {
+      const Mode& m = found[lateral].set.modes[i];
+      rows += fmt::format(
+          R"({}    {{"plane": "{}", "mode": {}, "omega": {:.17g}, "frequency": {:.17g}, "omega_ratio": {:.17g}, "kind": "{}", "odd_share": {:.6g}}})",
+          rows.empty() ? "\n" : ",\n", plane_name(lateral == 1), i + 1, m.omega * unit, m.omega * unit / (2.0 * std::numbers::pi), m.omega,
+          to_string(m.kind), m.odd_share);
+    }
+  return fmt::format("{{\n  \"modes\": [{}\n  ],\n  \"complete\": {}\n}}\n", rows, found[0].set.complete() && found[1].set.complete());
+}
+
+ExitStatus run(const Configuration& c, RunContext& context) {
+  const HangingCable cable = setup(c);
+  for (const auto& w : hanging_cable_warnings(cable)) context.warn(w);
+  const CoreCable core = core_of(cable);
+  const double unit = frequency_unit(cable);
+  ResultFile file(context.output);
+  write_study(file, c);
+  write_hanging_cable(file, cable);
+  std::vector<std::string> failures;
+  Found found[2];
+  const int points = int(c.integer("modes.points"));
+  for (const bool lateral : {false, true}) {
+    const int count = int(c.integer(lateral ? "modes.out_of_plane" : "modes.in_plane"));
+    Found& f = found[lateral];
+    f.set.resolved = true;
+    if (count == 0) continue;
+    f = find(core, count, lateral);
+    auto columns = mode_columns(f, unit);
+    if (lateral) add_backbone(columns, cable, core, count);
+    TextColumn kinds{"kind", "symmetric, antisymmetric or hybrid (5 to 95 % odd)", {}};
+    for (const auto& mode : f.set.modes) kinds.values.emplace_back(to_string(mode.kind));
+    const std::string group = fmt::format("/modes/{}", plane_name(lateral));
+    file.table(group, columns, {kinds});
+    file.attribute(group, "counted", double(f.set.counted));
+    file.attribute(group, "expected", double(f.set.expected));
+    file.attribute(group, "counted_below", f.set.counted_below * unit);
+    file.attribute(group, "functions", double(f.set.functions));
+    if (points > 1) write_shapes(file, cable, f, lateral, points);
+    if (!f.set.complete())
+      failures.push_back(fmt::format("modes {} are not proved complete: {} listed, {} counted", plane_name(lateral), f.set.expected, f.set.counted));
+    if (!context.quiet) fmt::print(stderr, "{}", text(f, unit, lateral));
+    if (c.flag("series.compare")) write_series(file, cable, count, lateral, context, failures);
+  }
+  file.flush();
+  for (const double h : c.numbers("sweep.height_over_span"))
+    for (const bool lateral : {false, true})
+      if (!interrupted) write_sweep(file, c, h, lateral, failures);
+  if (context.json) fmt::print("{}", json(found, unit));
+  return finish_tables(file, context, failures);
+}
+
+}  // namespace
+
+StudyKind catenary_modes_study() { return {schema(), run, check}; }
+
+}  // namespace whirl::studies

@@ -1,0 +1,88 @@
+// Catenary shapes: printed tables, every sufficient set, refusals.
+#include <cmath>
+
+#include "tests/models/catenary/reference.hpp"
+
+using namespace catenary_test;
+
+TEST_CASE("catenary: Tables A-1 and A-4", "[published]") {
+  const Table printed = table("A1_printed"), a1 = table("A1_verified");
+  REQUIRE(printed.rows.size() == a1.rows.size());
+  for (std::size_t i = 1; i < a1.rows.size(); ++i) {  // row 0 is the limit
+    const double m = half_width_of(a1(i, "sag"));
+    CHECK(0.5 / m == Approx(a1(i, "a_over_b_true")).epsilon(1e-11));          // 12 digits given
+    CHECK(0.5 / m == Approx(printed(i, "a_over_b")).margin(0.5e-5 * 1.001));  // as printed, to 5 decimals: all hold
+  }
+  const Table a4 = table("A4_verified");
+  for (std::size_t i = 0; i < a4.rows.size(); ++i) {
+    const double h = a4(i, "h_over_b");
+    const Geometry g = unit_geometry(half_width_reaching(a4(i, "xi2"), h), h);
+    CHECK(xi_of(g.x2) == Approx(4.0).epsilon(1e-12));
+    CHECK(xi_of(g.x1) == Approx(a4(i, "xi1_true")).epsilon(1e-9));  // 10 digits given
+    CHECK(0.5 / g.m == Approx(a4(i, "a_over_b_true")).epsilon(1e-9));
+    CHECK(g.sag_parameter() == Approx(a4(i, "sag_min_true")).epsilon(1e-9));
+    CHECK(xi_of(g.x1) == Approx(a4(i, "xi1_printed")).margin(0.5e-3 * 1.001));
+    CHECK(g.sag_parameter() == Approx(a4(i, "sag_min_printed")).margin(0.5e-3 * 1.001));
+  }
+  CHECK_THROWS_WITH(half_width_reaching(4.0, 5.0), Catch::Contains("the chord alone is steeper"));
+}
+
+TEST_CASE("catenary: every sufficient set gives the same cable") {
+  for (const double height : {0.0, 30.0, 250.0})
+    for (const double length_ratio : {1.0001, 1.05, 2.5}) {
+      const double weight = 98.1, span = 100.0, length = length_ratio * std::hypot(span, height);
+      const Geometry g = geometry({.span = span, .height = height, .length = length});
+      INFO("height " << height << " length " << length << " m " << g.m);
+      // The catenary by its definition: arc length, height and tension balance.
+      CHECK(g.a * (std::sinh(g.x2) - std::sinh(g.x1)) == Approx(length).epsilon(1e-12));
+      CHECK(g.a * (std::cosh(g.x2) - std::cosh(g.x1)) == Approx(height).epsilon(1e-12).margin(1e-10));
+      CHECK(g.a * (g.x2 - g.x1) == Approx(span).epsilon(1e-14));
+      CHECK(0.5 * g.a * (std::cosh(g.x1) + std::cosh(g.x2)) - g.a * std::cosh(g.x_m) == Approx(g.sag).epsilon(1e-8));
+      const double H = weight * g.a, f = g.sag;
+      std::vector<Geometry> same = {
+          geometry({.span = span, .height = height, .sag = f}),
+          geometry({.span = span, .height = height, .horizontal_tension = H, .weight_per_length = weight}),
+          geometry({.height = height, .length = length, .sag = f}),
+          geometry({.height = height, .length = length, .horizontal_tension = H, .weight_per_length = weight}),
+          geometry({.height = height, .sag = f, .horizontal_tension = H, .weight_per_length = weight}),
+      };
+      if (height > 0.0) {  // at h = 0 these ask for the square root of a rounding error
+        same.push_back(geometry({.span = span, .length = length, .sag = f}));
+        same.push_back(geometry({.span = span, .length = length, .horizontal_tension = H, .weight_per_length = weight}));
+        same.push_back(geometry({.span = span, .sag = f, .horizontal_tension = H, .weight_per_length = weight}));
+        same.push_back(geometry({.length = length, .sag = f, .horizontal_tension = H, .weight_per_length = weight}));
+      }
+      if (length_ratio < 2.0)  // the taut one of two
+        same.push_back(geometry({.span = span, .height = height, .upper_tension = H * std::cosh(g.x2), .weight_per_length = weight}));
+      for (const Geometry& k : same) {
+        CHECK(k.m == Approx(g.m).epsilon(1e-9));  // ill-conditioned where the cable is nearly its chord: (l/chord - 1)/eps
+        CHECK(k.x_m == Approx(g.x_m).epsilon(1e-8).margin(1e-7));
+        CHECK(k.span == Approx(span).epsilon(1e-8));
+        CHECK(k.length == Approx(length).epsilon(1e-8));
+      }
+    }
+}
+
+TEST_CASE("catenary: what cannot hang is refused in one line") {
+  const auto refusal = [](const GeometryInput& in) {
+    try {
+      (void)geometry(in);
+    } catch (const std::invalid_argument& e) {
+      return std::string(e.what());
+    }
+    return std::string();
+  };
+  CHECK_THAT(refusal({.span = 100.0, .height = 0.0, .length = 90.0}), Catch::Contains("span 100 m is not shorter than the cable, 90 m"));
+  CHECK_THAT(refusal({.span = 80.0, .height = 80.0, .length = 100.0}), Catch::Contains("height difference 80 m is beyond reach"));
+  CHECK_THAT(refusal({.span = 80.0, .height = 180.0, .length = 100.0}), Catch::Contains("height difference 180 m is beyond reach"));
+  CHECK_THAT(refusal({.span = 80.0, .height = 0.0, .sag = -1.0}), Catch::Contains("the sag must be > 0, got -1"));
+  CHECK_THAT(refusal({.span = 80.0, .height = -1.0, .sag = 1.0}), Catch::Contains("height difference must be >= 0"));
+  CHECK_THAT(refusal({.span = 80.0, .length = 100.0, .sag = 60.0}), Catch::Contains("exceeds half the length"));
+  CHECK_THAT(refusal({.span = 80.0, .length = 100.0, .sag = 30.0}), Catch::Contains("out of reach"));
+  CHECK_THAT(refusal({.span = 80.0, .height = 0.0}), Catch::Contains("exactly three"));
+  CHECK_THAT(refusal({.span = 80.0, .height = 0.0, .length = 90.0, .sag = 1.0}), Catch::Contains("exactly three"));
+  CHECK_THAT(refusal({.span = 80.0, .height = 0.0, .horizontal_tension = 1.0}), Catch::Contains("weight per length"));
+  CHECK_THAT(refusal({.span = 80.0, .height = 0.0, .upper_tension = 10.0, .weight_per_length = 10.0}), Catch::Contains("out of reach"));
+  CHECK_THAT(refusal({.span = 1.0, .height = 0.0, .length = 1e8}), Catch::Contains("too deep"));
+  CHECK_THAT(refusal({.span = 1.0, .height = 0.0, .horizontal_tension = 1e9, .weight_per_length = 1.0}), Catch::Contains("too taut"));
+}

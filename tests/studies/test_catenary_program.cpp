@@ -1,0 +1,156 @@
+// The studies of hanging cables as a user meets them.
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <regex>
+#include <sstream>
+
+#include "studies/result_file.hpp"
+
+namespace fs = std::filesystem;
+using namespace whirl::studies;
+
+namespace {
+
+struct Ran {
+  int status;
+  std::string out, err;
+};
+
+struct Folder {
+  fs::path path = fs::temp_directory_path() / ("whirl-catenary-" + std::to_string(::getpid()));
+  Folder() { fs::create_directories(path); }
+  ~Folder() { fs::remove_all(path); }
+};
+
+std::string slurp(const fs::path& p) {
+  std::ifstream in(p);
+  std::stringstream s;
+  s << in.rdbuf();
+  return s.str();
+}
+
+Ran program(const Folder& f, const std::string& arguments) {
+  const auto out = f.path / "out.txt", err = f.path / "err.txt";
+  const std::string command = "cd '" + f.path.string() + "' && " + WHIRL_PROGRAM + " " + arguments + " >" + out.string() + " 2>" + err.string();
+  const int code = std::system(command.c_str());
+  return {WIFEXITED(code) ? WEXITSTATUS(code) : 128 + WTERMSIG(code), slurp(out), slurp(err)};
+}
+
+std::string study(const std::string& name) { return std::string(WHIRL_SOURCE_DIR) + "/studies/" + name + ".toml "; }
+
+// Every number of a key in a JSON text.
+std::vector<double> numbers(const std::string& json, const std::string& key) {
+  std::vector<double> values;
+  const std::regex pattern("\"" + key + "\": ([-+0-9.eE]+)");
+  for (auto m = std::sregex_iterator(json.begin(), json.end(), pattern); m != std::sregex_iterator(); ++m) values.push_back(std::stod((*m)[1]));
+  return values;
+}
+
+}  // namespace
+
+TEST_CASE("catenary-modes: frequencies in SI and as ratios, shapes, sweep, series") {
+  const Folder f;
+  // b/sqrt(l^2 - h^2) = 0.9, h = b/2, inextensible: a row of the source's Table B-3, corrected.
+  const Ran r = program(f, "run " + study("catenary-modes") + "--json --set sweep.points=3 -o m.h5");
+  INFO(r.err);
+  REQUIRE(r.status == 0);
+  CHECK(numbers(r.out, "omega_ratio").size() == 16);
+  CHECK(r.out.find("\"complete\": true") != std::string::npos);
+  ResultReader file(f.path / "m.h5");
+  CHECK(file.scalar("/cable", "sag_parameter").value == Approx(0.9).epsilon(1e-8));
+  const double unit = file.scalar("/cable", "frequency_unit").value;
+  const Table t = file.table("/modes/in_plane");
+  CHECK(t.columns[1].values[0] == Approx(numbers(r.out, "omega_ratio")[0] * unit).epsilon(1e-12));
+  CHECK(t.columns[2].values[0] == Approx(t.columns[1].values[0] / (2.0 * 3.14159265358979324)).epsilon(1e-12));
+  CHECK(file.column("/modes/in_plane", "decay").values[0] == Approx(0.025).epsilon(0.2));  // drag 0.5 over twice 10 kg/m, less its tangential share
+  CHECK(file.column("/shapes/in_plane/mode3", "V").values.front() == Approx(0.0).margin(1e-9));
+  CHECK(file.column("/sweep/out_of_plane/h0.5", "w1").values.size() == 3);
+
+  std::ofstream(f.path / "stiff.toml") << "study = \"catenary-modes\"\n[cable]\nspan = 100\nheight_difference = 50\nlength = 121.842845552563\n"
+                                          "mass_per_length = 10\n[series]\ncompare = true\n";
+  const Ran stiff = program(f, "run stiff.toml --json -o s.h5");
+  INFO(stiff.err);
+  REQUIRE(stiff.status == 0);
+  const double printed[] = {3.13296809319, 4.97860823666, 6.92395904678, 8.68910318782, 10.5504741629, 12.3095496431, 14.1423833465, 15.9023567805};
+  for (std::size_t k = 0; k < 8; ++k) CHECK(numbers(stiff.out, "omega_ratio")[k] == Approx(printed[k]).epsilon(1e-10));
+  ResultReader s(f.path / "s.h5");
+  for (const double d : s.column("/series/in_plane", "difference").values) CHECK(std::abs(d) < 1e-9);
+}
+
+TEST_CASE("catenary-forced: resonance, motion along the cable, phases") {
+  const Folder f;
+  const Ran r = program(f, "run " + study("catenary-forced") + "--json --set response.points=60 -o c.h5");
+  INFO(r.err);
+  REQUIRE(r.status == 0);
+  CHECK(r.err.find("slack") != std::string::npos);
+  ResultReader file(f.path / "c.h5");
+  const auto U = file.column("/motions/w0.8/h1", "U").values, U2 = file.column("/motions/w0.8/h2", "U").values;
+  CHECK(U.front() == Approx(0.0).margin(1e-12));
+  CHECK(U.back() == Approx(0.5).epsilon(1e-12));
+  CHECK(U2.back() == Approx(0.1).epsilon(1e-12));
+  CHECK(file.column("/motions/w0.8/h2", "U_phase").values.back() == Approx(1.5707963267948966));
+  CHECK(file.column("/resonance", "tension").values.size() > 200);
+  CHECK(file.number_attribute("/motions/w0.8", "omega") == 0.8);
+  // A vertical motion has both parts; together they are the amplitude.
+  const Ran v = program(f, "run " + study("catenary-forced") +
+                               "--set end_motion.tangential=[] --set end_motion.tangential_phase_deg=[] "
+                               "--set end_motion.vertical=[0.3] --set response.points=2 -o v.h5");
+  REQUIRE(v.status == 0);
+  ResultReader vertical(f.path / "v.h5");
+  CHECK(std::hypot(vertical.column("/motions/w0.8/h1", "U").values.back(), vertical.column("/motions/w0.8/h1", "V").values.back()) == Approx(0.3));
+}
+
+TEST_CASE("veering: crossings by both ways, least gap, hybrid modes") {
+  const Folder f;
+  const Ran r = program(f, "run " + study("veering") + "--json --set veering.points=12 --set veering.height_over_span=[0.0,0.1] -o v.h5");
+  INFO(r.err);
+  REQUIRE(r.status == 0);
+  const auto kappa = numbers(r.out, "flexibility"), gap = numbers(r.out, "gap");
+  CHECK(kappa.at(0) == Approx(0.00949701628833).epsilon(1e-10));
+  CHECK(gap.at(0) == 0.0);
+  ResultReader file(f.path / "v.h5");
+  const auto walked = file.column("/crossings", "flexibility").values;
+  for (const double expected : {0.00949701628833, 0.00222565573064})
+    CHECK(std::any_of(walked.begin(), walked.end(), [&](double k) { return std::abs(k / expected - 1.0) < 1e-9; }));
+  CHECK(std::any_of(gap.begin(), gap.end(), [](double g) { return std::abs(g - 0.0177603) < 1e-6; }));
+  CHECK(file.number_attribute("/hybrid/h0.1/closest", "odd_lower") == Approx(0.5).margin(0.1));
+  CHECK(file.has("/fan/h0"));
+}
+
+TEST_CASE("hanging cables: bad input gives one clear line and nothing else") {
+  const Folder f;
+  const std::string modes = "run " + study("catenary-modes"), forced = "run " + study("catenary-forced");
+  const std::pair<std::string, std::string> cases[] = {
+      {modes + "--set cable.length=90", "cable.span = 100.0: the span 100 m is not shorter than the cable, 90 m"},
+      {modes + "--set cable.height_difference=110", "cable.height_difference = 110.0: the height difference 110 m is beyond reach"},
+      {modes + "--set cable.height_difference=-1", "cable.height_difference = -1"},
+      {modes + "--set cable.sag=10", "exactly three"},
+      {modes + "--set cable.sag=-10", "cable.sag = -10"},
+      {modes + "--set series.compare=true", "series method is for inextensible cables"},
+      {modes + "--set sweep.sag_parameter=[0.9,0.5]", "must be increasing"},
+      {modes + "--set sweep.sag_parameter=[0.5,1.5]", "sweep.sag_parameter"},
+      {forced + "--set end_motion.tangential=[]", "has more entries than end_motion.tangential"},
+      {forced + "--set response.range=[2,1]", "must be increasing"},
+      {forced + "--set response.range=[0,1e6]", "too many waves"},
+      {"run " + study("veering") + "--set veering.flexibility=[0.2,0.1]", "must be increasing"},
+  };
+  for (const auto& [arguments, expected] : cases) {
+    const Ran r = program(f, arguments + " -o x.h5");
+    INFO(arguments << "\n" << r.err);
+    CHECK(r.status == 2);
+    CHECK(std::count(r.err.begin(), r.err.end(), '\n') == 1);
+    CHECK(r.err.find(expected) != std::string::npos);
+    CHECK_FALSE(fs::exists(f.path / "x.h5"));
+  }
+  std::ofstream(f.path / "deep.toml") << "study = \"catenary-modes\"\n[cable]\nspan = 10\nheight_difference = 0\nlength = 100\n"
+                                         "mass_per_length = 1\n[series]\ncompare = true\n";
+  const Ran deep = program(f, "run deep.toml -o x.h5");
+  CHECK(deep.status == 2);
+  CHECK(deep.err.find("deep.toml:8: series.compare = true: the series method needs both ends within |xi| < 4") != std::string::npos);
+}
