@@ -168,12 +168,11 @@ std::vector<int> partners(const std::vector<LevelPoint>& from, const std::vector
 
 std::vector<Match> match_points(const Levels& levels, double reach) {
   const auto exact = points_of(levels, "exact"), frozen = points_of(levels, "frozen"), complete = points_of(levels, "complete");
-  double largest = 1e-300;
-  for (const auto& p : exact) largest = std::max(largest, p.amplitudes.maxCoeff());
-  const auto& walk = levels.options.orbits.network.walk;
-  const Distance distance = [&](const LevelPoint& a, const LevelPoint& b) {
+  // A tenth of the frequency weighs as much as the whole amplitude.
+  const Distance distance = [](const LevelPoint& a, const LevelPoint& b) {
     if (a.kind != b.kind) return std::numeric_limits<double>::infinity();
-    return std::hypot((a.p - b.p) / (walk.upper - walk.lower), (a.amplitudes - b.amplitudes).norm() / largest);
+    const double size = std::max({a.amplitudes.norm(), b.amplitudes.norm(), 1e-300});
+    return std::hypot(10.0 * (a.p - b.p) / std::max(std::abs(a.p), std::abs(b.p)), (a.amplitudes - b.amplitudes).norm() / size);
   };
   const auto to_frozen = partners(exact, frozen, distance, reach), to_complete = partners(exact, complete, distance, reach);
   std::vector<bool> frozen_used(frozen.size()), complete_used(complete.size());

@@ -54,8 +54,8 @@ struct Match {
   std::optional<LevelPoint> frozen, complete, exact;
   std::string words() const;  ///< "all", "only exact", "not frozen", ...
 };
-/// Points of one kind paired where they are each other's nearest, in units of the parameter range and of the largest amplitude, up to `reach`.
-std::vector<Match> match_points(const Levels& levels, double reach = 0.2);
+/// Points of one kind paired where they are each other's nearest, in units of a tenth of the frequency and of the amplitude, up to `reach`.
+std::vector<Match> match_points(const Levels& levels, double reach = 1.0);
 
 /// Error of the frozen level at p: over the exact stable motions the largest distance to the nearest stable averaged one, relative to the exact
 /// amplitude.
