@@ -301,3 +301,21 @@ TEST_CASE("model options that make no sense are refused") {
   m.out_of_plane.clear();
   CHECK_THROWS_AS(cable_system(m, {}), std::invalid_argument);
 }
+
+TEST_CASE("harmonic balance knows the symmetries of many modes") {
+  // Planar motion under chord motion has no shift symmetry; a string driven across has: odd half waves change sign, even ones too.
+  for (const int count : {2, 20}) {
+    CableModel m = cable(count, count);
+    m.stay.cable.gravity = 0.0;
+    m.direction = Direction::normal;
+    m.terms = Terms::reduced;
+    const HarmonicBalance hb(cable_system(m, {Lens("omega")}), {.harmonics = 2, .reflections = cable_reflections(m)});
+    std::vector<std::string> names;
+    for (const auto& r : hb.reflections()) names.push_back(r.subtype);
+    CHECK(names == std::vector<std::string>{"WH", "SB", "SB"});  // and those two: in plane shifted, all shifted
+  }
+  CableModel m = cable(1, 2);
+  const HarmonicBalance hb(cable_system(m, {Lens("omega")}), {.harmonics = 2, .reflections = cable_reflections(m)});
+  REQUIRE(hb.reflections().size() == 1);
+  CHECK(hb.reflections()[0].subtype == "WH");
+}
