@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "studies/cable_model_keys.hpp"
 #include "studies/common_keys.hpp"
 
 namespace whirl::studies {
@@ -14,7 +15,10 @@ ModalSystem<double> ForcedSystem::at(In p) const {
   return s;
 }
 
-void add_forced_system_keys(Schema& schema) { add_stay_keys(schema); }
+void add_forced_system_keys(Schema& schema) {
+  add_stay_keys(schema, true);
+  add_model_keys(schema);
+}
 
 ForcedSystem forced_system_of(const Configuration& c, const std::vector<std::string>& lenses) {
   std::vector<Lens> chosen;
@@ -27,10 +31,15 @@ ForcedSystem forced_system_of(const Configuration& c, const std::vector<std::str
       throw InputError(fmt::format("{}: parameter '{}': {}", c.source(), name,
                                    guess.empty() ? e.what() : fmt::format("no such parameter, did you mean {}?", guess)));
     }
-  return {stay_system(stay_of(c), chosen, terms_of(c), coefficients_of(c)), {{{-1, 1}, "WH"}}, {"q1", "q2"}, "m", units};
+  if (is_plain_stay(c)) return {stay_system(stay_of(c), chosen, terms_of(c), coefficients_of(c)), {{{-1, 1}, "WH"}}, {"q1", "q2"}, "m", units};
+  const CableModel model = cable_model_of(c);
+  return {cable_system(model, chosen), cable_reflections(model), coordinate_names(c), "m", units};
 }
 
-std::vector<std::string> check_forced_system(const Configuration& c) { return check_cable(c); }
+std::vector<std::string> check_forced_system(const Configuration& c) {
+  (void)cable_model_of(c);
+  return check_cable(c);
+}
 
 void write_forced_system(ResultFile& file, const Configuration& c) { write_cable_numbers(file, stay_of(c).cable); }
 
