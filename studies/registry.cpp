@@ -2,13 +2,14 @@
 
 #include <fmt/format.h>
 
+#include "studies/modes_study.hpp"
 #include "studies/superharmonic_study.hpp"
 #include "studies/two_parameter_study.hpp"
 
 namespace whirl::studies {
 
 const std::vector<StudyKind>& study_kinds() {
-  static const std::vector<StudyKind> kinds = {superharmonic_study(), two_parameter_study()};
+  static const std::vector<StudyKind> kinds = {superharmonic_study(), two_parameter_study(), modes_study()};
   return kinds;
 }
 
