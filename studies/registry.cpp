@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "studies/mode_convergence_study.hpp"
 #include "studies/modes_study.hpp"
 #include "studies/superharmonic_study.hpp"
 #include "studies/two_parameter_study.hpp"
@@ -9,7 +10,7 @@
 namespace whirl::studies {
 
 const std::vector<StudyKind>& study_kinds() {
-  static const std::vector<StudyKind> kinds = {superharmonic_study(), two_parameter_study(), modes_study()};
+  static const std::vector<StudyKind> kinds = {superharmonic_study(), two_parameter_study(), modes_study(), mode_convergence_study()};
   return kinds;
 }
 
