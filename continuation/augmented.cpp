@@ -4,6 +4,8 @@
 #include <Eigen/QR>
 #include <Eigen/SVD>
 
+#include "continuation/null_vectors.hpp"
+
 namespace whirl::continuation {
 namespace {
 
@@ -83,13 +85,12 @@ Vector SingularSystem::unknowns(In u) const {
 void SingularSystem::update_borders(In y) {
   spread(y);
   base_.jacobian(u_, j_);
-  const Eigen::JacobiSVD<Matrix> svd(block_of(j_, block_), Eigen::ComputeFullU | Eigen::ComputeFullV);
   const int m = static_cast<int>(block_.size());
-  // Singular vectors come with any sign; keep it along a curve, so that test functions do not jump.
-  const double b_sense = svd.matrixU().col(m - 1).dot(b_.head(m)) < 0.0 ? -1.0 : 1.0,
-               c_sense = svd.matrixV().col(m - 1).dot(c_.head(m)) < 0.0 ? -1.0 : 1.0;
-  b_.head(m) = b_sense * svd.matrixU().col(m - 1);
-  c_.head(m) = c_sense * svd.matrixV().col(m - 1);
+  Vector right, left;
+  null_vectors(block_of(j_, block_), right, left);
+  // They come with any sign; keep it along a curve, so that test functions do not jump.
+  b_.head(m) = left.dot(b_.head(m)) < 0.0 ? -left : left;
+  c_.head(m) = right.dot(c_.head(m)) < 0.0 ? -right : right;
   b_[m] = c_[m] = 0.0;
 }
 
@@ -328,6 +329,88 @@ void HopfSystem::do_jacobian(In y, MatrixOut j) const {
   gather_rows(j_, 1, j);
   const int s = static_cast<int>(state_.size());
   for (int e = 0; e < 2; ++e) j.row(s + e) = four.row(entry_[e]);
+}
+
+// --------------------------------------------------------------------------------------------------------------- PeakSystem
+
+QuadraticForm QuadraticForm::coordinate(int n, int i) { return {Matrix::Zero(n, n), Vector::Unit(n, i)}; }
+
+QuadraticForm QuadraticForm::square_sum(int n, const Indices& of) {
+  QuadraticForm form{Matrix::Zero(n, n), Vector::Zero(n)};
+  for (const int i : of) form.Q(i, i) = 1.0;
+  return form;
+}
+
+PeakSystem::PeakSystem(const Problem& base, Indices state, QuadraticForm form, In u)
+    : AugmentedSystem(base, std::move(state), 0), form_(std::move(form)), full_(base.size() + base.parameters()) {
+  const int s = static_cast<int>(state_.size());
+  bordered_.resize(s + 1, s + 1);
+  c_ = v_ = w_ = gradient_ = Vector::Zero(s + 1);
+  update_borders(unknowns(u));
+}
+
+Vector PeakSystem::unknowns(In u) const {
+  Vector y(size() + parameters());
+  for (int i = 0; i < u_.size(); ++i)
+    if (column(i) >= 0) y[column(i)] = u[i];
+  return y;
+}
+
+// c = the curve's own tangent.
+void PeakSystem::update_borders(In y) {
+  spread(y);
+  base_.jacobian(u_, j_);
+  const int s = static_cast<int>(state_.size());
+  Matrix wide(s, s + 1);
+  for (int r = 0; r < s; ++r) {
+    for (int c = 0; c < s; ++c) wide(r, c) = j_(state_[std::size_t(r)], state_[std::size_t(c)]);
+    wide(r, s) = j_(state_[std::size_t(r)], base_.size());
+  }
+  const Vector tangent = Eigen::JacobiSVD<Matrix>(wide, Eigen::ComputeFullV).matrixV().col(s);
+  c_ = tangent.dot(c_) < 0.0 ? Vector(-tangent) : tangent;
+}
+
+void PeakSystem::solve_bordered() const {
+  const int s = static_cast<int>(state_.size());
+  const Vector slope = form_.gradient(u_.head(base_.size()));
+  gradient_.setZero();
+  for (int r = 0; r < s; ++r) {
+    gradient_[r] = slope[state_[std::size_t(r)]];
+    for (int c = 0; c < s; ++c) bordered_(r, c) = j_(state_[std::size_t(r)], state_[std::size_t(c)]);
+    bordered_(r, s) = j_(state_[std::size_t(r)], base_.size());
+  }
+  bordered_.row(s) = c_.transpose();
+  lu_.compute(bordered_);
+  v_ = lu_.solve(Vector::Unit(s + 1, s));
+  w_ = lu_.transpose().solve(gradient_);
+}
+
+void PeakSystem::do_residual(In y, Out r) const {
+  spread(y);
+  base_.linearise(u_, r_, j_);
+  solve_bordered();
+  const int s = static_cast<int>(state_.size());
+  for (int i = 0; i < s; ++i) r[i] = r_[state_[std::size_t(i)]];
+  r[s] = gradient_.dot(v_);
+}
+
+void PeakSystem::do_jacobian(In y, MatrixOut j) const {
+  spread(y);
+  base_.jacobian(u_, j_);
+  solve_bordered();
+  const int s = static_cast<int>(state_.size());
+  j.setZero();
+  gather_rows(j_, 0, j);
+  embed(v_.head(s), state_, full_);
+  const Vector bend = form_.Q * full_.head(base_.size());
+  full_[base_.size()] = v_[s];
+  base_.second(u_, full_, h_);
+  for (int c = 0; c < h_.cols(); ++c)
+    if (column(c) >= 0) {
+      double dh = c < base_.size() ? bend[c] : 0.0;
+      for (int i = 0; i < s; ++i) dh -= w_[i] * h_(state_[std::size_t(i)], c);
+      j(s, column(c)) = dh;
+    }
 }
 
 }  // namespace whirl::continuation

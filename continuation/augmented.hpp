@@ -19,6 +19,12 @@
 ///     r_S(x, p) = 0,  two entries of G = 0     [ A^2 + kappa I   W ] [X]   [0]
 ///                                              [ V'              0 ] [G] = [I]
 ///   Unknowns (x_S, p1, kappa | p2 ...).
+///
+/// PeakSystem, an extremum of a(x) = 1/2 x'Qx + l'x along the curve r(x, p1) = 0:
+///
+///     r_S(x, p) = 0,  h = (Qx + l)' v_x = 0    [ r_x r_p1 ] [v]   [0]     dh = v_x'Q . - w' D2r[v, .],  [ r_x r_p1 ]' [w]   [Qx + l]
+///                                              [   c'     ]     = [1]                                   [   c'     ]     = [  0   ]
+///   Unknowns (x_S, p1 | p2 ...).
 
 #include <Eigen/LU>
 
@@ -109,6 +115,33 @@ class HopfSystem : public AugmentedSystem {
   mutable Matrix a_, bordered_, x_, y_, g_;
   mutable Eigen::PartialPivLU<Matrix> lu_;
   mutable Vector full_;
+};
+
+/// a(x) = 1/2 x'Qx + l'x of the unknowns x: a coordinate, or half the square of an amplitude.
+struct QuadraticForm {
+  Matrix Q;
+  Vector l;
+  static QuadraticForm coordinate(int n, int i);
+  static QuadraticForm square_sum(int n, const Indices& of);  ///< half the sum of x_i^2
+  double value(In x) const { return 0.5 * x.dot(Q * x) + l.dot(x); }
+  Vector gradient(In x) const { return Q * x + l; }
+};
+
+class PeakSystem : public AugmentedSystem {
+ public:
+  PeakSystem(const Problem& base, Indices state, QuadraticForm form, In u);
+  Vector unknowns(In u) const override;
+  void update_borders(In y) override;
+
+ private:
+  void do_residual(In y, Out r) const override;
+  void do_jacobian(In y, MatrixOut j) const override;
+  void solve_bordered() const;
+  QuadraticForm form_;
+  Vector c_;
+  mutable Matrix bordered_;
+  mutable Eigen::PartialPivLU<Matrix> lu_;
+  mutable Vector v_, w_, gradient_, full_;
 };
 
 }  // namespace whirl::continuation

@@ -124,6 +124,7 @@ Branch Branch::joined(const Branch& backward, const Branch& forward) {
   r.stop_reason = forward.stop_reason;
   r.name = forward.name;
   r.born_at = forward.born_at;
+  r.isola = forward.isola;
   r.active_reflections = forward.active_reflections;
   return r;
 }

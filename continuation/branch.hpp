@@ -96,6 +96,7 @@ class Branch {
   StopReason start_reason = StopReason::none, stop_reason = StopReason::none;
   std::string name;
   std::string born_at;                  ///< "start", "seed", or the label of the branch point it leaves from
+  bool isola = false;                   ///< closed, found from a seed, no branch point shared with a branch known before
   std::vector<int> active_reflections;  ///< reflections of the problem that leave every point of this branch in place
 
  private:

@@ -13,10 +13,13 @@ bool negative_determinant(const Eigen::PartialPivLU<Matrix>& lu) {
 
 Curve::Curve(const Problem& f, Blocks blocks, const CurveOptions& options)
     : f_(f),
+      orbit_(dynamic_cast<const OrbitProblem*>(&f)),
       blocks_(std::move(blocks)),
       options_(options),
       spectrum_(blocks_),
       eigenvalues_(Eigen::VectorXcd::Zero(spectrum_size(f))),
+      group_(Eigen::VectorXi::Zero(spectrum_size(f))),
+      leads_(orbit_ ? 1 : static_cast<int>(blocks_.indices.size())),
       weight_(Vector::Ones(f.size() + 1)),
       r_(f.size()),
       step_(f.size() + 1),
@@ -31,6 +34,11 @@ Curve::Curve(const Problem& f, Blocks blocks, const CurveOptions& options)
     block_.emplace_back(m, m);
     block_lu_.emplace_back(m);
   }
+}
+
+int Curve::spectrum_size(const Problem& f) {
+  if (const auto* orbit = dynamic_cast<const OrbitProblem*>(&f)) return orbit->multiplier_count();
+  return f.is_flow() ? f.size() : 0;
 }
 
 void Curve::set_scales(double x_scale, double p_scale) {
@@ -85,7 +93,7 @@ bool Curve::complete(In u, Out tangent, Signature& signature) {
   signature.forward = tangent[n] > 0.0;
   if (!f_.is_flow()) {
     block_determinants(signature, signature.forward);
-    return f_.multiplier_count() == 0 || count_multipliers(u, signature);
+    return !orbit_ || count_multipliers(u, signature);
   }
   if (!spectrum_.compute(jacobian_)) return false;
   eigenvalues_ = spectrum_.eigenvalues();
@@ -113,14 +121,20 @@ void Curve::block_determinants(Signature& signature, bool forward) {
 }
 
 bool Curve::count_multipliers(In u, Signature& signature) {
-  if (!f_.multipliers(u, eigenvalues_) || !eigenvalues_.allFinite()) return false;
-  signature.unstable[0] = signature.flips = 0;
-  lead_[0] = std::numeric_limits<double>::infinity();
-  for (const auto& mu : eigenvalues_) {
+  if (!orbit_->multipliers(u, eigenvalues_, group_) || !eigenvalues_.allFinite()) return false;
+  signature.unstable.fill(0);
+  signature.above.fill(0);
+  signature.flips.fill(0);
+  lead_.fill(std::numeric_limits<double>::infinity());
+  for (Eigen::Index i = 0; i < eigenvalues_.size(); ++i) {
+    const std::complex<double> mu = eigenvalues_[i];
+    const auto slot = static_cast<std::size_t>(group_[i]);
     const double excess = std::abs(mu) - 1.0;
-    if (excess > 0.0) ++signature.unstable[0];
-    if (excess > 0.0 && mu.imag() == 0.0 && mu.real() < 0.0) ++signature.flips;
-    if (std::abs(excess) < std::abs(lead_[0])) lead_[0] = excess;
+    leads_ = std::max(leads_, group_[i] + 1);
+    if (std::abs(excess) < std::abs(lead_[slot])) lead_[slot] = excess;
+    if (!(excess > 0.0)) continue;
+    ++signature.unstable[slot];
+    if (mu.imag() == 0.0) ++(mu.real() > 0.0 ? signature.above : signature.flips)[slot];
   }
   return true;
 }

@@ -10,18 +10,25 @@
 #include <array>
 
 #include "continuation/spectrum.hpp"
+#include "core/orbit_problem.hpp"
 
 namespace whirl::continuation {
 
 /// What can change at a special point: the sense of the parameter, and per block the number of unstable directions and the sign of det r_x.
-/// Multipliers of a periodic motion are counted together, in slot 0 of `unstable`, those below -1 also in `flips`.
+/// Of a periodic motion the multipliers are counted per group of directions (orbit_problem.hpp), the determinants per block.
 struct Signature {
-  static constexpr int max_blocks = 8;
+  static constexpr int max_blocks = OrbitProblem::max_groups;
   bool forward = true;  ///< parameter increases along the tangent
   std::array<int, max_blocks> unstable{};
   std::array<bool, max_blocks> negative{};  ///< det of the block < 0
-  int flips = 0;                            ///< real multipliers < -1
+  std::array<int, max_blocks> above{};      ///< periodic motion: real multipliers > 1
+  std::array<int, max_blocks> flips{};      ///< periodic motion: real multipliers < -1
   bool operator==(const Signature&) const = default;
+  int total_unstable() const {
+    int sum = 0;
+    for (int count : unstable) sum += count;
+    return sum;
+  }
 };
 
 struct Sample {
@@ -29,7 +36,7 @@ struct Sample {
   Signature signature;
   double residual = 0.0;
   int iterations = 0;
-  std::array<double, Signature::max_blocks> lead{};  ///< per block, real part nearest zero; slot 0 of a periodic motion: |mu| - 1 nearest zero
+  std::array<double, Signature::max_blocks> lead{};  ///< per block, real part nearest zero; of a periodic motion per group, |mu| - 1 nearest zero
 };
 
 struct CurveOptions {
@@ -66,8 +73,11 @@ class Curve {
 
   /// Eigenvalues of r_x or Floquet multipliers at the point last completed; empty if the problem has neither.
   const Eigen::VectorXcd& eigenvalues() const { return eigenvalues_; }
-  double lead(int block) const { return lead_[static_cast<std::size_t>(block)]; }
-  static int spectrum_size(const Problem& f) { return f.multiplier_count() > 0 ? f.multiplier_count() : f.is_flow() ? f.size() : 0; }
+  const std::array<double, Signature::max_blocks>& leads_now() const { return lead_; }  ///< test functions at the point last completed
+  static int spectrum_size(const Problem& f);
+  /// The problem as one of periodic motions; null if it is none.
+  const OrbitProblem* orbit() const { return orbit_; }
+  int leads() const { return leads_; }  ///< test functions in use: one per block, or per group of multipliers met so far
   const Matrix& jacobian() const { return jacobian_; }
 
   /// Corrected and completed point near `guess`, in the plane through it normal to `normal`.
@@ -80,10 +90,13 @@ class Curve {
   bool count_multipliers(In u, Signature& signature);
 
   const Problem& f_;
+  const OrbitProblem* orbit_;
   Blocks blocks_;
   CurveOptions options_;
   Spectrum spectrum_;
   Eigen::VectorXcd eigenvalues_;
+  Eigen::VectorXi group_;  // of each multiplier
+  int leads_;
   std::array<double, Signature::max_blocks> lead_{};
   Vector weight_, r_, step_, rhs_;
   Matrix jacobian_, bordered_;

@@ -4,6 +4,9 @@
 #include <memory>
 
 #include "continuation/augmented.hpp"
+#include "continuation/period_doubling.hpp"
+#include "continuation/switching.hpp"
+#include "continuation/torus.hpp"
 #include "core/newton.hpp"
 
 namespace whirl::continuation {
@@ -33,36 +36,37 @@ Indices block_or_empty(const Blocks& blocks, int k) { return blocks.indices[stat
 
 }  // namespace
 
-int EventFinder::total_unstable(const Signature& s) const {
-  int sum = 0;
-  for (int count : s.unstable) sum += count;
-  return sum;
-}
-
 std::vector<EventFinder::Kind> EventFinder::changes(const Signature& a, const Signature& b) const {
   std::vector<Kind> kinds;
-  const bool fold = a.forward != b.forward, periodic = curve_.problem().multiplier_count() > 0;
+  const bool fold = a.forward != b.forward;
   if (fold) kinds.push_back({EventType::fold, 0});
   for (int k = 0; k < static_cast<int>(curve_.blocks().indices.size()); ++k) {
     const auto slot = static_cast<std::size_t>(k);
     const bool turned = a.negative[slot] != b.negative[slot];
     if (k == 0 ? turned != fold : turned) kinds.push_back({EventType::branch_point, k});
     const int pairs = (std::abs(b.unstable[slot] - a.unstable[slot]) - (turned ? 1 : 0)) / 2;
-    if (pairs > 0 && !periodic) kinds.push_back({EventType::hopf, k});
+    if (pairs > 0 && !curve_.orbit()) kinds.push_back({EventType::hopf, k});
   }
-  if (periodic) {  // multipliers leave through +1 (above), -1, or in pairs
-    if ((b.flips - a.flips) % 2 != 0) kinds.push_back({EventType::period_doubling, 0});
-    if (std::abs(b.unstable[0] - a.unstable[0]) >= static_cast<int>(kinds.size()) + 2) kinds.push_back({EventType::torus, 0});
-  }
+  if (curve_.orbit()) multiplier_changes(a, b, kinds);
   return kinds;
+}
+
+// Multipliers of each group that left through -1, or in pairs. Real ones may meet and leave the axis, so only the parity of their number tells.
+void EventFinder::multiplier_changes(const Signature& a, const Signature& b, std::vector<Kind>& kinds) const {
+  for (int g = 0; g < curve_.leads(); ++g) {
+    const auto slot = static_cast<std::size_t>(g);
+    const bool flipped = (b.flips[slot] - a.flips[slot]) % 2 != 0, left = (b.above[slot] - a.above[slot]) % 2 != 0;
+    if (flipped) kinds.push_back({EventType::period_doubling, g});
+    if (std::abs(b.unstable[slot] - a.unstable[slot]) - (flipped ? 1 : 0) - (left ? 1 : 0) >= 2) kinds.push_back({EventType::torus, g});
+  }
 }
 
 std::vector<SpecialPoint> EventFinder::find(const Sample& before, const Sample& a, const Sample& b, bool last) {
   found_.clear();
-  if (!changes(a.signature, b.signature).empty()) explain(a, b, 0);
+  if (changed(a.signature, b.signature)) explain(a, b, 0);
   else if (last) look_closer(before, a, b, 0);
   else if (turns_at(before, a, b)) {
-    look_closer(b, before, a, 0);  // b only tells how much things moved
+    if (!changed(before.signature, a.signature)) look_closer(b, before, a, 0);  // b only tells how much things moved; a change was explained then
     look_closer(before, a, b, 0);
   }
   std::sort(found_.begin(), found_.end(), [&](const auto& p, const auto& q) { return fraction(curve_, a, b, p.u) < fraction(curve_, a, b, q.u); });
@@ -71,7 +75,10 @@ std::vector<SpecialPoint> EventFinder::find(const Sample& before, const Sample& 
 
 void EventFinder::explain(const Sample& a, const Sample& b, int depth) {
   const auto kinds = changes(a.signature, b.signature);
-  if (kinds.empty()) return;
+  if (kinds.empty()) {
+    if (a.signature.unstable != b.signature.unstable) report_unresolved(a, b);
+    return;
+  }
   for (const auto& kind : kinds) {
     SpecialPoint point;
     if (locate(kind, a, b, point) && accept(kind, a, b, point, depth)) return;
@@ -93,8 +100,8 @@ void EventFinder::report_unresolved(const Sample& a, const Sample& b) {
   p.residual = std::max(a.residual, b.residual);
   p.bracket[0] = std::min(a.u[a.u.size() - 1], b.u[b.u.size() - 1]);
   p.bracket[1] = std::max(a.u[a.u.size() - 1], b.u[b.u.size() - 1]);
-  p.unstable_before = total_unstable(a.signature);
-  p.unstable_after = total_unstable(b.signature);
+  p.unstable_before = a.signature.total_unstable();
+  p.unstable_after = b.signature.total_unstable();
   found_.push_back(p);
 }
 
@@ -106,7 +113,7 @@ bool EventFinder::turns_at(const Sample& before, const Sample& a, const Sample& 
   };
   const int n = curve_.problem().size();
   bool found = turns(before.tangent[n], a.tangent[n], b.tangent[n]);
-  for (std::size_t k = 0; k < curve_.blocks().indices.size() && !found; ++k) found = turns(before.lead[k], a.lead[k], b.lead[k]);
+  for (std::size_t k = 0; k < leads() && !found; ++k) found = turns(before.lead[k], a.lead[k], b.lead[k]);
   return found;
 }
 
@@ -118,10 +125,10 @@ void EventFinder::look_closer(const Sample& before, const Sample& a, const Sampl
     return std::min(std::abs(from), std::abs(to)) < moved && from * to > 0.0;
   };
   bool near = suspicious(before.tangent[n], a.tangent[n], b.tangent[n]);
-  for (std::size_t k = 0; k < curve_.blocks().indices.size(); ++k) near = near || suspicious(before.lead[k], a.lead[k], b.lead[k]);
+  for (std::size_t k = 0; k < leads(); ++k) near = near || suspicious(before.lead[k], a.lead[k], b.lead[k]);
   Sample middle;
   if (!near || depth >= options_.suspicion_depth || !curve_.between(a, b, 0.5, middle)) return;
-  if (!changes(a.signature, middle.signature).empty()) {
+  if (changed(a.signature, middle.signature)) {
     explain(a, middle, depth + 1);
     explain(middle, b, depth + 1);
   } else if (depth + 1 < options_.suspicion_depth) {
@@ -137,10 +144,10 @@ void EventFinder::look_at_extrema(const Sample& a, const Sample& middle, const S
   const auto vertex = [](double from, double half, double to) { return 0.5 - 0.25 * (to - from) / (from - 2.0 * half + to); };
   const int n = curve_.problem().size();
   std::vector<double> fractions = {vertex(a.tangent[n], middle.tangent[n], b.tangent[n])};
-  for (std::size_t k = 0; k < curve_.blocks().indices.size(); ++k) fractions.push_back(vertex(a.lead[k], middle.lead[k], b.lead[k]));
+  for (std::size_t k = 0; k < leads(); ++k) fractions.push_back(vertex(a.lead[k], middle.lead[k], b.lead[k]));
   for (const double sigma : fractions) {
     Sample at;
-    if (!(sigma > 0.0 && sigma < 1.0) || !curve_.between(a, b, sigma, at) || changes(a.signature, at.signature).empty()) continue;
+    if (!(sigma > 0.0 && sigma < 1.0) || !curve_.between(a, b, sigma, at) || !changed(a.signature, at.signature)) continue;
     explain(a, at, depth);
     explain(at, b, depth);
     return;
@@ -160,7 +167,7 @@ bool EventFinder::locate(const Kind& kind, const Sample& a, const Sample& b, Spe
     const auto list = changes(s, t);
     return std::any_of(list.begin(), list.end(), [&](const Kind& k) { return k.type == kind.type && k.block == kind.block; });
   };
-  const bool has_system = curve_.problem().derivatives() >= 2 && kind.type != EventType::period_doubling && kind.type != EventType::torus;
+  const bool has_system = curve_.problem().derivatives() >= 2;
   Sample lo = a, hi = b, middle;
   double from = 0.0, to = 1.0;
   for (int i = 0; i < 48; ++i) {
@@ -182,7 +189,7 @@ bool EventFinder::locate(const Kind& kind, const Sample& a, const Sample& b, Spe
     if (width < 1e-13 || to - from < 1e-13) break;
   }
   if (has_system) return false;
-  // No system of its own (no second derivatives on offer, or a multiplier away from +1): the narrowed bracket is the answer.
+  // No system of its own for want of second derivatives: the narrowed bracket is the answer.
   out = {};
   out.type = kind.type;
   out.block = kind.block;
@@ -196,8 +203,10 @@ bool EventFinder::locate(const Kind& kind, const Sample& a, const Sample& b, Spe
 bool EventFinder::solve(const Kind& kind, const Sample& near, SpecialPoint& out) {
   const Problem& f = curve_.problem();
   if (f.derivatives() < 2) return false;
+  if (kind.type == EventType::period_doubling) return solve_period_doubling(kind.block, near, out);
   const Blocks& blocks = curve_.blocks();
-  const Indices state = block_or_empty(blocks, 0), block = block_or_empty(blocks, kind.block);
+  const bool of_group = kind.type == EventType::torus;  // then kind.block is no symmetry block
+  const Indices state = block_or_empty(blocks, 0), block = block_or_empty(blocks, of_group ? 0 : kind.block);
   std::unique_ptr<AugmentedSystem> system;
   switch (kind.type) {
     case EventType::fold:
@@ -211,8 +220,11 @@ bool EventFinder::solve(const Kind& kind, const Sample& near, SpecialPoint& out)
     case EventType::hopf:
       system = std::make_unique<HopfSystem>(f, state, block, near.u);
       break;
-    case EventType::period_doubling:
     case EventType::torus:
+      system = torus_system(kind.block, near);
+      if (!system) return false;
+      break;
+    case EventType::period_doubling:
     case EventType::end:
     case EventType::gave_up:
     case EventType::user_value:
@@ -226,6 +238,7 @@ bool EventFinder::solve(const Kind& kind, const Sample& near, SpecialPoint& out)
   // At rounding level Newton may wander without meeting 1e-13: a tiny residual and a tiny last step count.
   if (!r.ok() && !(r.outcome == Outcome::stalled && r.residual < 1e-12)) return false;
   if (kind.type == EventType::hopf && !(static_cast<HopfSystem&>(*system).kappa(r.x) > 0.0)) return false;
+  if (kind.type == EventType::torus && !(static_cast<TorusSystem&>(*system).kappa(r.x) > 0.0)) return false;
   out = {};
   out.type = kind.type;
   out.block = kind.block;
@@ -234,8 +247,35 @@ bool EventFinder::solve(const Kind& kind, const Sample& near, SpecialPoint& out)
   out.residual = r.residual;
   out.subtype = kind.type == EventType::branch_point ? blocks.subtype[static_cast<std::size_t>(kind.block)] : "";
   if (auto* singular = dynamic_cast<SingularSystem*>(system.get())) out.null_vector = singular->null_vector(r.x);
+  if (kind.type == EventType::branch_point && kind.block == 0) (void)departures(f, out);  // tells pitchfork from transcritical
   if (kind.type == EventType::hopf) out.frequency = std::sqrt(static_cast<HopfSystem&>(*system).kappa(r.x));
+  if (kind.type == EventType::torus) {
+    const auto& torus = static_cast<TorusSystem&>(*system);
+    const Eigen::VectorXcd v = torus.null_vector(r.x);
+    out.frequency = torus.kappa(r.x);
+    out.null_vector = v.real();
+    out.null_vector_im = v.imag();
+  }
   return true;
+}
+
+bool EventFinder::solve_period_doubling(int group, const Sample& near, SpecialPoint& out) {
+  const auto at = period_doubling_near(*curve_.orbit(), near.u, group);
+  if (!at) return false;
+  out = {};
+  out.type = EventType::period_doubling;
+  out.block = group;
+  out.u = curve_.orbit()->from_doubled(at->u);
+  out.tangent = near.tangent;
+  out.residual = at->residual;
+  return true;
+}
+
+std::unique_ptr<AugmentedSystem> EventFinder::torus_system(int group, const Sample& near) const {
+  const OrbitProblem& orbit = *curve_.orbit();
+  const double kappa = torus_frequency(orbit, near.u, group);
+  if (!(kappa > 0.0)) return nullptr;
+  return std::make_unique<TorusSystem>(orbit, curve_.blocks().indices[0], unknowns_of_group(orbit, near.u, group), near.u, kappa);
 }
 
 // The event splits the step: signatures just before and behind it must show it, and what remains on either side is explained in turn.
@@ -255,8 +295,8 @@ bool EventFinder::accept(const Kind& kind, const Sample& a, const Sample& b, Spe
     const auto same = [&](const Kind& k) { return k.type == kind.type && k.block == kind.block; };
     const auto is_hopf = [](const Kind& k) { return k.type == EventType::hopf; };
     if (std::none_of(shown.begin(), shown.end(), same)) continue;
-    point.unstable_before = total_unstable(left.signature);
-    point.unstable_after = total_unstable(right.signature);
+    point.unstable_before = left.signature.total_unstable();
+    point.unstable_after = right.signature.total_unstable();
     // On a fold both sides lie on one side of it: the parameter itself closes the bracket.
     const double at = point.u[point.u.size() - 1], p = left.u[left.u.size() - 1], q = right.u[right.u.size() - 1];
     point.bracket[0] = std::min({at, p, q});
@@ -279,7 +319,7 @@ bool EventFinder::accept(const Kind& kind, const Sample& a, const Sample& b, Spe
     }
     // A real eigenvalue through zero changes the count by one and so hides a pair that crosses within the same delta.
     SpecialPoint pair;
-    if (kind.type != EventType::hopf && pairs_left != pairs_right && std::none_of(shown.begin(), shown.end(), is_hopf) &&
+    if (!curve_.orbit() && kind.type != EventType::hopf && pairs_left != pairs_right && std::none_of(shown.begin(), shown.end(), is_hopf) &&
         solve({EventType::hopf, kind.block}, left, pair) && curve_.length(pair.u - point.u) < 2.0 * delta) {
       copy_sides(point, pair);
       found_.push_back(pair);
@@ -330,7 +370,7 @@ bool EventFinder::mirror_crossing(const Sample& a, const Sample& b, int r, Speci
     out.tangent = (b.u - a.u) / chord;
     out.null_vector = system.null_vector(result.x);
     out.residual = result.residual;
-    out.unstable_before = out.unstable_after = total_unstable(a.signature);
+    out.unstable_before = out.unstable_after = a.signature.total_unstable();
     out.bracket[0] = std::min({u[f.size()], a.u[f.size()], b.u[f.size()]});
     out.bracket[1] = std::max({u[f.size()], a.u[f.size()], b.u[f.size()]});
     return true;

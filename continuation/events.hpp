@@ -2,14 +2,16 @@
 /// Finding every special point between two accepted points of a walk, and proving it.
 ///
 /// A change of signature between two points names what must lie between: a fold (the parameter turns), a branch point in a block
-/// (its determinant changes sign and no fold explains it), Hopf points (two unstable directions more or fewer). Each is located by Newton on
-/// its own system (augmented.hpp) from a bracket; the signature just before and just behind it is computed, and what remains
-/// on either side is explained in turn. What cannot be located is returned as `unresolved` with its bracket.
-/// Where nothing changed but an eigenvalue or the turning of the parameter comes closer to zero than it moved, the step is looked at more closely:
-/// two events that cancel are found too.
+/// (its determinant changes sign and no fold explains it), Hopf points (two unstable directions more or fewer); of periodic motions period doublings
+/// (the parity of the multipliers below -1) and torus points (two unstable multipliers more or fewer), per group of directions. Each is located by
+/// Newton on its own system (augmented.hpp, period_doubling.hpp, torus.hpp) from a bracket; the signature just before and just behind it is computed,
+/// and what remains on either side is explained in turn. What cannot be located is returned as `unresolved` with its bracket. Where nothing changed
+/// but an eigenvalue or the turning of the parameter comes closer to zero than it moved, the step is looked at more closely: two events that cancel
+/// are found too.
 
 #include <functional>
 
+#include "continuation/augmented.hpp"
 #include "continuation/branch.hpp"
 #include "continuation/curve.hpp"
 
@@ -36,9 +38,12 @@ class EventFinder {
  private:
   struct Kind {
     EventType type;
-    int block;
+    int block;  // of a period doubling or torus point: the group of multipliers
   };
   std::vector<Kind> changes(const Signature& a, const Signature& b) const;
+  void multiplier_changes(const Signature& a, const Signature& b, std::vector<Kind>& kinds) const;
+  bool changed(const Signature& a, const Signature& b) const { return a.unstable != b.unstable || !changes(a, b).empty(); }
+  std::size_t leads() const { return static_cast<std::size_t>(curve_.leads()); }
   void explain(const Sample& a, const Sample& b, int depth);
   void look_closer(const Sample& before, const Sample& a, const Sample& b, int depth);
   void look_at_extrema(const Sample& a, const Sample& middle, const Sample& b, int depth);
@@ -46,7 +51,8 @@ class EventFinder {
   bool solve(const Kind& kind, const Sample& near, SpecialPoint& out);
   bool accept(const Kind& kind, const Sample& a, const Sample& b, SpecialPoint& found, int depth);
   void report_unresolved(const Sample& a, const Sample& b);
-  int total_unstable(const Signature& s) const;
+  bool solve_period_doubling(int group, const Sample& near, SpecialPoint& out);
+  std::unique_ptr<AugmentedSystem> torus_system(int group, const Sample& near) const;
 
   Curve& curve_;
   EventOptions options_;

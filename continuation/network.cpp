@@ -96,20 +96,27 @@ void Network::adopt(Branch branch, int generation) {
   branch.name = fmt::format("{}{}", prefix, number);
   for (auto& s : branch.special) set_normal_form(problem_, s);
   const int index = static_cast<int>(branches_.size());
+  branch.isola = generation == 0 && branch.stop_reason == StopReason::closed_loop;
   int count = 0;
   for (auto& s : branch.special) {
     if (s.type != EventType::branch_point) continue;
     ++count;
     const auto known = std::find_if(junctions_.begin(), junctions_.end(), [&](const Junction& j) { return same_up_to_mirror(j.point.u, s.u); });
     if (known != junctions_.end()) {
+      branch.isola = false;
       known->done = true;  // this branch ends at a point where another would have been switched to it
       continue;
     }
     const bool arrives = branch.stop_reason == StopReason::symmetric_branch && &s == &branch.special.back();
-    junctions_.push_back({s, index, count, generation, arrives});
+    junctions_.push_back({s, index, fmt::format("{}:BP{}", branch.name, count), generation, arrives});
   }
   branches_.push_back(std::move(branch));
   if (on_branch_) on_branch_(branches_.back());
+}
+
+void Network::add_branch_point(const SpecialPoint& point, const std::string& origin) {
+  const bool known = std::any_of(junctions_.begin(), junctions_.end(), [&](const Junction& j) { return same_up_to_mirror(j.point.u, point.u); });
+  if (!known) junctions_.push_back({point, -1, origin, 0, false});
 }
 
 void Network::switch_branches() {
@@ -118,11 +125,12 @@ void Network::switch_branches() {
     if (junctions_[i].done || junctions_[i].generation >= options_.depth) continue;
     junctions_[i].done = true;
     SpecialPoint point = junctions_[i].point;
-    const std::string origin = fmt::format("{}:BP{}", branches_[static_cast<std::size_t>(junctions_[i].branch)].name, junctions_[i].number);
+    const std::string origin = junctions_[i].origin;
     const int generation = junctions_[i].generation + 1;
     for (const Departure& d : departures(problem_, point)) {
-      for (auto& s : branches_[static_cast<std::size_t>(junctions_[i].branch)].special)
-        if (s.type == EventType::branch_point && s.subtype.empty() && (s.u - point.u).norm() == 0.0) s.subtype = point.subtype;
+      if (junctions_[i].branch >= 0)
+        for (auto& s : branches_[static_cast<std::size_t>(junctions_[i].branch)].special)
+          if (s.type == EventType::branch_point && s.subtype.empty() && (s.u - point.u).norm() == 0.0) s.subtype = point.subtype;
       Walker walker(problem_, options_.walk);
       Branch branch = walker.walk_from(point.u, d.direction, true, observer_);
       if (d.both_senses && branch.stop_reason != StopReason::closed_loop)

@@ -33,6 +33,8 @@ class Network {
   /// Walks both ways from u0 unless it or a mirror image lies on a known branch; false if nothing new came of it. Tells isolas: a seed whose
   /// branch is closed and was reached from nowhere.
   bool add_seed(const Vector& u0, const std::string& origin);
+  /// A branch point known from elsewhere (a period doubling of the undoubled problem) to switch at.
+  void add_branch_point(const SpecialPoint& point, const std::string& origin);
   /// Follows what leaves the branch points met so far, and theirs, up to the depth.
   void switch_branches();
 
@@ -48,8 +50,8 @@ class Network {
  private:
   struct Junction {
     SpecialPoint point;
-    int branch;  // on which it was found
-    int number;  // among that branch's special points of its type, from 1
+    int branch;          // on which it was found, -1: on none of this network
+    std::string origin;  // "IP1:BP2"
     int generation;
     bool done = false;  // some branch already leaves or arrives here
   };

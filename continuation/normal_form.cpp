@@ -2,7 +2,9 @@
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/LU>
-#include <Eigen/SVD>
+
+#include "continuation/null_vectors.hpp"
+#include "continuation/period_doubling.hpp"
 
 namespace whirl::continuation {
 namespace {
@@ -46,12 +48,6 @@ class Forms {
   Vector t_;
 };
 
-void null_vectors(const Matrix& a, Vector& v, Vector& w) {
-  const Eigen::JacobiSVD<Matrix> svd(a, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  v = svd.matrixV().col(a.cols() - 1);
-  w = svd.matrixU().col(a.rows() - 1);
-}
-
 // h with A h = rhs, made unique by v'h = 0; rhs must lie in the range of A.
 Vector solve_off_null(const Matrix& a, const Vector& v, const Vector& w, const Vector& rhs) {
   const auto n = a.rows();
@@ -62,9 +58,47 @@ Vector solve_off_null(const Matrix& a, const Vector& v, const Vector& w, const V
   return m.partialPivLu().solve(r).head(n);
 }
 
+// a' = w'(D2r[v, t]) s a + c a^3 loses its meaning as a flow where r is a harmonic balance; the branch s = -(c / w'D2r[v, t]) a^2 keeps its own.
+void set_orbit_pitchfork(const Problem& f, SpecialPoint& point) {
+  const int sense = point.unstable_after - point.unstable_before, n = f.size();
+  if (sense == 0 || point.tangent.size() == 0) return;
+  Matrix j(n, n + f.parameters()), h(n, n + f.parameters());
+  f.jacobian(point.u, j);
+  const Matrix a = j.leftCols(n);
+  Vector v, w, full = Vector::Zero(n + f.parameters());
+  null_vectors(a, v, w);
+  Forms forms(f, point.u);
+  const double cubic = w.dot(forms.C(v, v, v)) / 6.0 + 0.5 * w.dot(forms.B(v, solve_off_null(a, v, w, Vector(-forms.B(v, v)))));
+  full.head(n) = v;
+  f.second(point.u, full, h);
+  const double crossing = w.dot(h * point.tangent);
+  point.coefficient = cubic / crossing * (sense > 0 ? 1.0 : -1.0);
+  point.has_coefficient = std::isfinite(point.coefficient);
+}
+
+void set_orbit_coefficient(const OrbitProblem& orbit, SpecialPoint& point) {
+  if (point.type == EventType::branch_point && point.block > 0) set_orbit_pitchfork(orbit, point);
+  if (point.type != EventType::period_doubling) return;
+  auto doubled = period_doubling_near(orbit, point.u, point.block);
+  if (!doubled) return;
+  doubled->tangent = orbit.in_doubled(point.tangent);
+  doubled->unstable_before = point.unstable_before;
+  doubled->unstable_after = point.unstable_after;
+  set_orbit_pitchfork(orbit.doubled(), *doubled);
+  point.coefficient = doubled->coefficient;
+  point.has_coefficient = doubled->has_coefficient;
+}
+
 }  // namespace
 
-void set_normal_form(const Problem& f, SpecialPoint& point) {
+std::string criticality(const SpecialPoint& point) {
+  const bool pitchfork = point.type == EventType::branch_point && point.subtype != "TC" && (point.block > 0 || point.subtype == "PF");
+  const bool branches_off = pitchfork || point.type == EventType::hopf || point.type == EventType::period_doubling;
+  if (!point.has_coefficient || !branches_off || point.coefficient == 0.0) return "";
+  return point.coefficient < 0.0 ? "supercritical" : "subcritical";
+}
+
+void set_normal_form(const Problem& f, SpecialPoint& point, const Vector& sense) {
   const int n = f.size();
   if (f.derivatives() < 3) return;
   Matrix j(n, n + f.parameters());
@@ -92,16 +126,27 @@ void set_normal_form(const Problem& f, SpecialPoint& point) {
     point.null_vector_im = q.imag();
     return;
   }
+  if (const auto* orbit = dynamic_cast<const OrbitProblem*>(&f)) {
+    set_orbit_coefficient(*orbit, point);
+    return;
+  }
   if (point.type != EventType::fold && point.type != EventType::branch_point) return;
   Vector v, w;
   null_vectors(a, v, w);
   const double overlap = w.dot(v);
   if (std::abs(overlap) < 1e-10) return;  // a double zero: no coefficient
-  w /= overlap;
+  const auto along = [&](In direction) { return direction.size() >= n && v.dot(direction.head(n)) < 0.0; };
+  if (along(sense.size() > 0 ? sense : point.tangent)) {
+    v = -v;
+    w = -w;
+  }
+  w /= w.dot(v);
+  if (point.type == EventType::fold) point.null_vector = v;
   const Vector bvv = forms.B(v, v);
   const double quadratic = 0.5 * w.dot(bvv);
   // At a branch point the centre manifold bends with the parameter too; w'B(v, v) = 0 marks the pitchfork.
-  const bool pitchfork = point.type == EventType::branch_point && std::abs(quadratic) < 1e-7 * (1.0 + bvv.norm());
+  const bool told = !point.subtype.empty(), broken = point.block > 0 || point.subtype == "PF";
+  const bool pitchfork = point.type == EventType::branch_point && (told ? broken : std::abs(quadratic) < 1e-7 * (1.0 + bvv.norm()));
   point.coefficient = pitchfork ? w.dot(forms.C(v, v, v)) / 6.0 + 0.5 * w.dot(forms.B(v, solve_off_null(a, v, w, Vector(-bvv)))) : quadratic;
   point.has_coefficient = std::isfinite(point.coefficient);
 }

@@ -8,6 +8,8 @@
 
 #include "continuation/augmented.hpp"
 #include "continuation/normal_form.hpp"
+#include "continuation/period_doubling.hpp"
+#include "continuation/torus.hpp"
 #include "core/newton.hpp"
 
 namespace whirl::continuation {
@@ -52,23 +54,30 @@ class Held : public Problem {
   mutable Matrix wide_;
 };
 
-std::unique_ptr<AugmentedSystem> make_system(const Problem& f, const SpecialPoint& point, const Blocks& blocks, In u) {
+std::unique_ptr<AugmentedSystem> make_system(const Problem& f, const SpecialPoint& point, const Blocks& blocks, const std::vector<Observable>& peaks,
+                                             In u) {
   const Indices& state = blocks.indices[0];
-  const Indices& block = blocks.indices[static_cast<std::size_t>(point.block)];
+  const auto of_block = [&]() -> const Indices& { return blocks.indices[static_cast<std::size_t>(point.block)]; };
   switch (point.type) {
     case EventType::fold:
       return std::make_unique<SingularSystem>(f, state, state, u);
     case EventType::branch_point:
-      if (point.block > 0) return std::make_unique<SingularSystem>(f, state, block, u);
+      if (point.block > 0) return std::make_unique<SingularSystem>(f, state, of_block(), u);
       return std::make_unique<BranchPointSystem>(f, u);
     case EventType::hopf:
-      return std::make_unique<HopfSystem>(f, state, block, u);
-    case EventType::period_doubling:
+      return std::make_unique<HopfSystem>(f, state, of_block(), u);
+    case EventType::peak:
+      for (const auto& peak : peaks)
+        if (peak.name == point.subtype && peak.form) return std::make_unique<PeakSystem>(f, state, *peak.form, u);
+      throw std::invalid_argument(fmt::format("no form is known of the quantity '{}' that has its peak here", point.subtype));
     case EventType::torus:
+      if (const auto* orbit = dynamic_cast<const OrbitProblem*>(&f))
+        return std::make_unique<TorusSystem>(*orbit, state, unknowns_of_group(*orbit, u, point.block), u, point.frequency);
+      break;
+    case EventType::period_doubling:  // `follow` hands it on as a branch point of the doubled problem
     case EventType::end:
     case EventType::gave_up:
     case EventType::user_value:
-    case EventType::peak:
     case EventType::unresolved:
       break;
   }
@@ -92,7 +101,7 @@ class Follower {
   SpecialPoint at(In y) const;  // the special point behind the system's unknowns, with its normal form
   std::vector<Test> tests() const;
   Vector base(In y) const { return system_->base_point(y); }
-  double crossing_pair(In y) const;  // real part of the least damped pair away from the critical ones
+  double crossing_pair(In y, double kappa = 0.0) const;  // real part of the pair nearest the axis, away from the critical one
   double crossing_real(In y) const;
   bool mirrored(const Vector& a, const Vector& b) const;  // did the part that breaks a symmetry pass zero between a and b?
   bool symmetric(const Vector& u) const;                  // is that part zero next to the rest?
@@ -102,6 +111,7 @@ class Follower {
   SpecialPoint point_;
   TwoParameterOptions options_;
   mutable Held held_;
+  mutable Vector sense_;
   Blocks blocks_;
   std::unique_ptr<AugmentedSystem> system_;
 };
@@ -119,18 +129,26 @@ SpecialPoint Follower::at(In y) const {
     s.frequency = kappa > 0.0 ? std::sqrt(kappa) : 0.0;
     if (!(kappa > 0.0)) return s;
   }
-  set_normal_form(held_, s);
+  // Along the curve the null vector turns, it does not jump: neither does the sign of a fold's coefficient.
+  if (const auto* torus = dynamic_cast<const TorusSystem*>(system_.get())) {
+    s.frequency = torus->kappa(y);
+    return s;
+  }
+  set_normal_form(held_, s, sense_);
   if (!s.has_coefficient) s.coefficient = std::nan("");
+  if (point_.type == EventType::fold && s.has_coefficient) sense_ = s.null_vector;
   return s;
 }
 
-double Follower::crossing_pair(In y) const {
+double Follower::crossing_pair(In y, double kappa) const {
   Matrix j(f_.size(), f_.size() + 2);
   f_.jacobian(base(y), j);
   double best = std::nan("");
   const Eigen::VectorXcd e = Eigen::EigenSolver<Matrix>(j.leftCols(f_.size()), false).eigenvalues();
-  for (const auto& z : e)
-    if (z.imag() > 1e-9 && !(std::abs(z.real()) > std::abs(best))) best = z.real();
+  Eigen::Index critical = -1;  // a curve of Hopf points has a pair on the axis all along
+  if (kappa > 0.0) (e.array() - std::complex<double>(0.0, std::sqrt(kappa))).abs().minCoeff(&critical);
+  for (Eigen::Index k = 0; k < e.size(); ++k)
+    if (k != critical && e[k].imag() > 1e-9 && !(std::abs(e[k].real()) > std::abs(best))) best = e[k].real();
   return best;
 }
 
@@ -184,11 +202,20 @@ std::vector<Test> Follower::tests() const {
                    }});
     if (f_.is_flow()) all.push_back({"ZH", [this](In y) { return crossing_pair(y); }});
   }
-  if (point_.type == EventType::branch_point && point_.block > 0) all.push_back({"DP", coefficient});
+  if (point_.type == EventType::branch_point) {
+    if (point_.block > 0 || point_.subtype == "PF") all.push_back({"DP", coefficient});
+    if (singular)
+      all.push_back({"BT", [singular](In y) {
+                       const Vector v = singular->null_vector(y), w = singular->left_null_vector(y);
+                       return w.dot(v);
+                     }});
+    if (f_.is_flow()) all.push_back({"ZH", [this](In y) { return crossing_pair(y); }});
+  }
   if (const auto* hopf = dynamic_cast<const HopfSystem*>(system_.get())) {
     all.push_back({"BT", [hopf](In y) { return hopf->kappa(y); }});
     all.push_back({"GH", coefficient});
     all.push_back({"ZH", [this](In y) { return crossing_real(y); }});
+    if (f_.size() >= 4) all.push_back({"HH", [this, hopf](In y) { return crossing_pair(y, hopf->kappa(y)); }});
   }
   return all;
 }
@@ -229,13 +256,14 @@ DefiningCurve Follower::run(double p2, const Observer& observer) {
   const int n = f_.size();
   Vector u(n + 2);
   u << point_.u, p2;
-  system_ = make_system(f_, point_, blocks_, u);
+  system_ = make_system(f_, point_, blocks_, options_.walk.peaks, u);
   TwoParameterOptions o = options_;
   o.walk.lower = o.range2[0];
   o.walk.upper = o.range2[1];
   o.walk.locate_events = true;
-  const int p1_column = static_cast<int>(blocks_.indices[0].size());
-  const auto inside = [&](double p1) { return p1 >= o.range1[0] && p1 <= o.range1[1]; };
+  o.walk.peaks.clear();
+  o.walk.user_values.clear();
+  o.walk.bounds = {{static_cast<int>(blocks_.indices[0].size()), o.range1[0], o.range1[1]}};  // of p1
   int fresh = 0;
   StopReason why = StopReason::none;  // of a walk that the watch below stops
   const Observer watch = [&](const Branch& b, int i) {
@@ -243,7 +271,6 @@ DefiningCurve Follower::run(double p2, const Observer& observer) {
     const auto* hopf = dynamic_cast<const HopfSystem*>(system_.get());
     if (i > 0 && mirrored(base(b.u(i - 1)), base(b.u(i)))) why = StopReason::symmetric_branch;
     else if (hopf && hopf->kappa(b.u(i)) < 0.0) why = StopReason::bogdanov_takens;  // beyond: neutral saddles
-    else if (!inside(b.u(i)[p1_column])) why = StopReason::parameter_bound;         // of the first parameter
     else if (observer && !observer(b, i)) why = StopReason::observer;
     return why == StopReason::none;
   };
@@ -274,12 +301,19 @@ DefiningCurve Follower::run(double p2, const Observer& observer) {
   curve.coefficient.resize(count);
   curve.frequency.resize(count);
   curve.residual.resize(count);
+  sense_ = Vector();
+  double sense_at_point = 1.0, nearest = std::numeric_limits<double>::infinity();
   const auto all = tests();
   std::vector<double> last(all.size(), std::nan(""));
   for (int i = 0; i < count; ++i) {
     system_->update_borders(b.u(i));
     const SpecialPoint s = at(b.u(i));
     curve.u.col(i) = base(b.u(i));
+    if (const double apart = (curve.u.col(i) - u).norm();
+        apart < nearest && s.null_vector.size() == point_.null_vector.size() && s.null_vector.size() > 0) {
+      nearest = apart;
+      sense_at_point = s.null_vector.dot(point_.null_vector) < 0.0 ? -1.0 : 1.0;
+    }
     curve.coefficient[i] = s.coefficient;
     curve.frequency[i] = s.frequency;
     curve.residual[i] = b.residual(i);
@@ -289,6 +323,7 @@ DefiningCurve Follower::run(double p2, const Observer& observer) {
       last[t] = now;
     }
   }
+  if (point_.type == EventType::fold) curve.coefficient *= sense_at_point;  // as the point itself has it
   // Folds of the curve in the second parameter, found by the walker itself: thresholds.
   for (const auto& s : b.special) {
     if (s.type != EventType::fold) continue;
@@ -305,9 +340,29 @@ DefiningCurve Follower::run(double p2, const Observer& observer) {
 
 }  // namespace
 
+namespace {
+
+// A period doubling is a branch point of the doubled problem: its curve is followed there.
+DefiningCurve follow_doubling(const OrbitProblem& orbit, const SpecialPoint& point, double p2, const TwoParameterOptions& options,
+                              const Observer& observer) {
+  Vector u(point.u.size() + 1);
+  u << point.u, p2;
+  auto at = period_doubling_near(orbit, u, point.block);
+  if (!at) throw std::invalid_argument("the period doubling does not satisfy its system");
+  at->u.conservativeResize(at->u.size() - 1);
+  DefiningCurve curve = Follower(orbit.doubled(), *at, options).run(p2, observer);
+  curve.type = EventType::period_doubling;
+  curve.subtype = "";
+  return curve;
+}
+
+}  // namespace
+
 DefiningCurve follow(const Problem& problem2, const SpecialPoint& point, double p2, const TwoParameterOptions& options, const Observer& observer) {
   if (problem2.parameters() != 2) throw std::invalid_argument("following a special point needs a problem with two free parameters");
   if (problem2.derivatives() < 2) throw std::invalid_argument("following a special point needs second derivatives");
+  const auto* orbit = dynamic_cast<const OrbitProblem*>(&problem2);
+  if (orbit && point.type == EventType::period_doubling) return follow_doubling(*orbit, point, p2, options, observer);
   return Follower(problem2, point, options).run(p2, observer);
 }
 

@@ -32,7 +32,7 @@ struct TwoParameterOptions {
 struct DefiningCurve {
   EventType type = EventType::fold;
   std::string subtype;
-  Matrix u;            ///< (x, p1, p2) in columns
+  Matrix u;            ///< (x, p1, p2) in columns; of a period doubling x is the motion over twice its period
   Vector coefficient;  ///< normal-form coefficient at each column, NaN where undefined
   Vector frequency;    ///< Hopf curves, rad per time unit; else 0
   Vector residual;

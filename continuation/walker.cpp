@@ -75,6 +75,10 @@ Branch Walker::walk_from(const Vector& u0, const Vector& direction, bool from_br
   s_->observer = &observer;
   const double sense = s_->now.tangent[problem_.size()], p0 = u0[problem_.size()];
   if ((p0 >= options_.upper && sense > 0.0) || (p0 <= options_.lower && sense < 0.0)) s_->stop = StopReason::parameter_bound;
+  for (const auto& b : options_.bounds) {
+    const double at = u0[b.index], along = s_->now.tangent[b.index];
+    if ((at >= b.upper && along > 0.0) || (at <= b.lower && along < 0.0)) s_->stop = StopReason::parameter_bound;
+  }
   while (can_continue()) {
     predict();
     if (!correct()) {
@@ -119,8 +123,10 @@ bool Walker::begin(const Vector& u0, const Vector& direction, bool from_branch_p
       Spectrum eigen(s.curve.blocks());
       if (eigen.compute(j)) s.eigenvalues = eigen.eigenvalues();
       for (const auto& z : s.eigenvalues) unstable += z.real() > 1e-8 * (1.0 + std::abs(z)) ? 1 : 0;
-    } else if (problem_.multiplier_count() > 0 && problem_.multipliers(u0, s.eigenvalues)) {
-      for (const auto& mu : s.eigenvalues) unstable += std::abs(mu) > 1.0 + 1e-8 ? 1 : 0;
+    } else if (s.curve.orbit()) {
+      Eigen::VectorXi group(s.eigenvalues.size());
+      if (s.curve.orbit()->multipliers(u0, s.eigenvalues, group))
+        for (const auto& mu : s.eigenvalues) unstable += std::abs(mu) > 1.0 + 1e-8 ? 1 : 0;
     }
     s.branch.append(s.now.u, s.now.tangent, 0.0, s.now.residual, 0.0, 0, unstable, &s.eigenvalues);
     s.branch.start_reason = StopReason::known_branch_point;
@@ -133,9 +139,7 @@ bool Walker::begin(const Vector& u0, const Vector& direction, bool from_branch_p
       if (!s.curve.sample(u0, normal, s.now)) return false;
     }
     s.has_signature = true;
-    int unstable = 0;
-    for (int count : s.now.signature.unstable) unstable += count;
-    s.branch.append(s.now.u, s.now.tangent, 0.0, s.now.residual, 0.0, s.now.iterations, unstable, &s.curve.eigenvalues());
+    s.branch.append(s.now.u, s.now.tangent, 0.0, s.now.residual, 0.0, s.now.iterations, s.now.signature.total_unstable(), &s.curve.eigenvalues());
   }
   s.before = s.now;
   s.start_u = s.now.u;
@@ -161,9 +165,10 @@ bool Walker::correct() {
   s.next.u = s.predicted;
   s.report = s.curve.correct(s.next.u, s.now.tangent, s.predicted);
   if (!s.report.ok) return false;
-  const double beyond = s.next.u[n] - std::clamp(s.next.u[n], options_.lower, options_.upper);
-  if (beyond != 0.0) {
-    if (!reach_bound()) return false;
+  int index = n;
+  double bound = 0.0;
+  if (!within_bounds(index, bound)) {
+    if (!reach_bound(index, bound)) return false;
   } else if (!s.curve.complete(s.next.u, s.next.tangent, s.next.signature)) {
     return false;
   }
@@ -187,26 +192,42 @@ bool Walker::correct() {
   s.factor = std::clamp(std::max({by_angle, by_contraction, by_distance}), 0.5, 2.0);
   if (angle > limit && !first_off_branch_point && s.step > 4.0 * options_.min_step) return false;
   s.step_taken = s.curve.length(s.next.u - s.now.u);
-  for (std::size_t k = 0; k < s.curve.blocks().indices.size(); ++k) s.next.lead[k] = s.curve.lead(static_cast<int>(k));
+  s.next.lead = s.curve.leads_now();
   s.eigenvalues = s.curve.eigenvalues();
   s.next.residual = s.report.residual;
   s.next.iterations = s.report.iterations;
   return true;
 }
 
-// The step crosses a bound: end on it exactly.
-bool Walker::reach_bound() {
-  State& s = *s_;
+// The first range that the step leaves.
+bool Walker::within_bounds(int& index, double& bound) const {
   const int n = problem_.size();
-  const double bound = s.next.u[n] < options_.lower ? options_.lower : options_.upper;
-  const double part = std::clamp((bound - s.now.u[n]) / (s.next.u[n] - s.now.u[n]), 0.0, 1.0);
+  double first = 2.0;  // fraction of the step
+  const auto check = [&](int i, double lower, double upper) {
+    const double to = s_->next.u[i], from = s_->now.u[i], end = to < lower ? lower : upper;
+    if (to >= lower && to <= upper) return;
+    const double part = std::clamp((end - from) / (to - from), 0.0, 1.0);
+    if (part >= first) return;
+    first = part;
+    index = i;
+    bound = end;
+  };
+  check(n, options_.lower, options_.upper);
+  for (const auto& b : options_.bounds) check(b.index, b.lower, b.upper);
+  return first > 1.0;
+}
+
+// The step crosses a bound of coordinate `index` of u: end on it exactly.
+bool Walker::reach_bound(int index, double bound) {
+  State& s = *s_;
+  const double part = std::clamp((bound - s.now.u[index]) / (s.next.u[index] - s.now.u[index]), 0.0, 1.0);
   s.next.u = s.now.u + part * (s.next.u - s.now.u);
-  s.next.u[n] = bound;
-  s.bend = Vector::Unit(n + 1, n) * (s.next.u[n] > s.now.u[n] ? 1.0 : -1.0);
+  s.next.u[index] = bound;
+  s.bend = Vector::Unit(problem_.size() + 1, index) * (s.next.u[index] > s.now.u[index] ? 1.0 : -1.0);
   s.predicted = s.next.u;
   s.report = s.curve.correct(s.next.u, s.bend, s.predicted);
   if (!s.report.ok || s.curve.length(s.next.u - s.now.u) > 2.0 * s.step) return false;
-  s.next.u[n] = bound;
+  s.next.u[index] = bound;
   if (!s.curve.complete(s.next.u, s.next.tangent, s.next.signature)) return false;
   s.stop = StopReason::parameter_bound;
   return true;
@@ -273,8 +294,7 @@ void Walker::find_peaks_and_values() {
     p.bracket[0] = s.now.u[n];
     p.bracket[1] = s.next.u[n];
     p.arclength = s.arclength + s.curve.length(at.u - s.now.u);
-    for (int count : at.signature.unstable) p.unstable_after += count;
-    p.unstable_before = p.unstable_after;
+    p.unstable_before = p.unstable_after = at.signature.total_unstable();
     s.branch.special.push_back(std::move(p));
   };
   for (double value : options_.user_values) {
@@ -286,40 +306,69 @@ void Walker::find_peaks_and_values() {
     Sample at;
     if (s.curve.sample(guess, normal, at)) add(EventType::user_value, "", at);
   }
-  for (const auto& peak : options_.peaks) {
-    // Slope of the observable along the branch, by central difference along the tangent.
-    const auto slope = [&](const Sample& at) {
-      const double h = 1e-5 * std::min(1.0, s.curve.x_scale());
-      return (peak.value(at.u + h * at.tangent) - peak.value(at.u - h * at.tangent)) / (2.0 * h);
-    };
-    double f = slope(s.now), g = slope(s.next);
-    if (!(f * g < 0.0)) continue;
-    Sample at = s.next;
-    double lo = 0.0, hi = 1.0;
-    for (int i = 0; i < 60 && hi - lo > 1e-10; ++i) {
-      const double sigma = i % 3 == 2 ? 0.5 * (lo + hi) : std::clamp(lo + (hi - lo) * f / (f - g), lo + 0.02 * (hi - lo), hi - 0.02 * (hi - lo));
-      if (!s.curve.between(s.now, s.next, sigma, at)) break;
-      const double m = slope(at);
-      if (m * f > 0.0) {
-        lo = sigma;
-        f = m;
-      } else {
-        hi = sigma;
-        g = m;
+  for (const auto& peak : options_.peaks) find_peak(peak);
+}
+
+// An extremum of the observable within the step: its slope along the tangent changes sign.
+void Walker::find_peak(const Observable& peak) {
+  State& s = *s_;
+  const int n = problem_.size();
+  const auto slope = [&](const Sample& at) {
+    if (peak.form) return peak.form->gradient(at.u.head(n)).dot(at.tangent.head(n));
+    const double h = 1e-5 * std::min(1.0, s.curve.x_scale());
+    return (peak.value(at.u + h * at.tangent) - peak.value(at.u - h * at.tangent)) / (2.0 * h);
+  };
+  double f = slope(s.now), g = slope(s.next);
+  if (!(f * g < 0.0)) return;
+  SpecialPoint p;
+  p.type = EventType::peak;
+  p.subtype = peak.name;
+  for (int k = 0; k < 2; ++k) p.bracket[k] = k == 0 ? std::min(s.now.u[n], s.next.u[n]) : std::max(s.now.u[n], s.next.u[n]);
+  Sample at = s.next;
+  double lo = 0.0, hi = 1.0;
+  for (int i = 0; i < 60 && hi - lo > 1e-10; ++i) {
+    const double sigma = i % 3 == 2 ? 0.5 * (lo + hi) : std::clamp(lo + (hi - lo) * f / (f - g), lo + 0.02 * (hi - lo), hi - 0.02 * (hi - lo));
+    if (!s.curve.between(s.now, s.next, sigma, at)) break;
+    if (peak.form && problem_.derivatives() >= 2) {  // its own system, from ever nearer
+      PeakSystem system(problem_, s.curve.blocks().indices[0], *peak.form, at.u);
+      const NewtonResult r = newton(system, system.unknowns(at.u), {.tolerance = 1e-13, .max_iterations = 12});
+      const bool solved = r.ok() || (r.outcome == Outcome::stalled && r.residual < 1e-12);
+      const Vector chord = s.next.u - s.now.u;
+      Vector u = at.u;
+      if (solved) u = system.base_point(r.x);
+      const double part = s.curve.dot(u - s.now.u, chord) / s.curve.dot(chord, chord);
+      if (solved && part > -1e-6 && part < 1.0 + 1e-6 && s.curve.length(u - s.now.u - part * chord) < 0.5 * s.step_taken + 1e-12 &&
+          s.curve.sample(u, chord, at)) {
+        at.u = u;
+        at.residual = r.residual;
+        break;
       }
     }
-    add(EventType::peak, peak.name, at);
+    const double m = slope(at);
+    if (m * f > 0.0) {
+      lo = sigma;
+      f = m;
+    } else {
+      hi = sigma;
+      g = m;
+    }
   }
+  p.u = at.u;
+  p.tangent = at.tangent;
+  p.residual = at.residual;
+  p.arclength = s.arclength + s.curve.length(at.u - s.now.u);
+  for (int count : at.signature.unstable) p.unstable_after += count;
+  p.unstable_before = p.unstable_after;
+  s.branch.special.push_back(std::move(p));
 }
 
 void Walker::accept() {
   State& s = *s_;
   const int n = problem_.size();
   if (s.accepted > 2 && close_loop()) return;
-  int unstable = 0;
-  for (int count : s.next.signature.unstable) unstable += count;
   s.arclength += s.step_taken;
-  s.branch.append(s.next.u, s.next.tangent, s.arclength, s.next.residual, s.step, s.next.iterations, unstable, &s.eigenvalues);
+  s.branch.append(s.next.u, s.next.tangent, s.arclength, s.next.residual, s.step, s.next.iterations, s.next.signature.total_unstable(),
+                  &s.eigenvalues);
   std::swap(s.before, s.now);
   std::swap(s.now, s.next);
   if (!s.has_signature) s.before = s.now;
@@ -358,9 +407,7 @@ bool Walker::close_loop() {
   if (!s.curve.sample(at.u + shift * s.start_tangent, s.start_tangent, at)) return false;
   if (s.curve.length(at.u - s.start_u) > 1e-7) return false;
   s.arclength += s.curve.length(s.start_u - s.now.u);
-  int unstable = 0;
-  for (int count : at.signature.unstable) unstable += count;
-  s.branch.append(s.start_u, s.start_tangent, s.arclength, at.residual, s.step, at.iterations, unstable, &s.curve.eigenvalues());
+  s.branch.append(s.start_u, s.start_tangent, s.arclength, at.residual, s.step, at.iterations, at.signature.total_unstable(), &s.curve.eigenvalues());
   // What lies behind the first point was found by the first step.
   std::erase_if(s.branch.special, [&s](const SpecialPoint& e) { return e.arclength > s.arclength; });
   s.stop = StopReason::closed_loop;

@@ -10,16 +10,26 @@
 /// A walk that cannot go on ends with a stop reason and all points so far.
 
 #include <functional>
+#include <optional>
 
+#include "continuation/augmented.hpp"
 #include "continuation/branch.hpp"
 #include "continuation/events.hpp"
 
 namespace whirl::continuation {
 
-/// A named quantity of a point (an amplitude, say) for peaks and user values.
+/// A named quantity of a point whose extrema along the branch are special points. With a `form` (which needs second derivatives of the problem)
+/// they are located on their own system and can be followed in two parameters; else by bracketing on differences of `value`.
 struct Observable {
   std::string name;
-  std::function<double(In u)> value;
+  std::function<double(In u)> value = {};
+  std::optional<QuadraticForm> form = std::nullopt;
+};
+
+/// A further coordinate of u with a range of its own; the walk ends on its end exactly.
+struct CoordinateBound {
+  int index;
+  double lower, upper;
 };
 
 struct WalkOptions {
@@ -32,8 +42,9 @@ struct WalkOptions {
   CurveOptions corrector;
   EventOptions events;
   bool locate_events = true;
-  std::vector<double> user_values;  ///< parameter values to hit exactly, reported as UZ
-  std::vector<Observable> peaks;    ///< their extrema along the branch are reported as RP
+  std::vector<double> user_values;           ///< parameter values to hit exactly, reported as UZ
+  std::vector<Observable> peaks;             ///< their extrema along the branch are reported as RP
+  std::vector<CoordinateBound> bounds = {};  ///< beside the parameter's range
   void validate() const;
 };
 
@@ -60,9 +71,11 @@ class Walker {
   void shorten_step();
   void accept();
   void locate_events();
-  bool reach_bound();
+  bool reach_bound(int index, double bound);
+  bool within_bounds(int& index, double& bound) const;
   bool close_loop();
   void find_peaks_and_values();
+  void find_peak(const Observable& peak);
   void lengthen_step();
 
   const Problem& problem_;

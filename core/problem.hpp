@@ -11,7 +11,7 @@
 ///     third     D3r(u)[a, b, c]     size n
 ///
 /// A `Flow` problem is the right-hand side of x' = r(x, p): eigenvalues of r_x decide stability. A problem whose solutions are
-/// periodic motions offers Floquet multipliers instead (`multipliers`, count `multiplier_count()` > 0).
+/// periodic motions has Floquet multipliers instead: orbit_problem.hpp.
 /// Calls check shapes with `assert`; the private virtuals do the work. Objects hold scratch memory: one per thread.
 
 #include <Eigen/Core>
@@ -59,12 +59,6 @@ class Problem {
     assert(u.size() == n_ + k_ && r.size() == n_ && j.rows() == n_ && j.cols() == n_ + k_);
     do_linearise(u, r, j);
   }
-  int multiplier_count() const { return multipliers_; }
-  /// Floquet multipliers of the motion behind u; false if they could not be computed.
-  [[nodiscard]] bool multipliers(In u, Eigen::VectorXcd& mu) const {
-    assert(u.size() == n_ + k_ && mu.size() == multipliers_);
-    return do_multipliers(u, mu);
-  }
   void second(In u, In v, MatrixOut h) const {
     assert(u.size() == n_ + k_ && v.size() == n_ + k_ && h.rows() == n_ && h.cols() == n_ + k_);
     do_second(u, v, h);
@@ -77,7 +71,6 @@ class Problem {
  protected:
   Problem(int n, int k, bool flow) : n_(n), k_(k), flow_(flow), names_(static_cast<std::size_t>(k), "p") {}
   void name_parameters(std::vector<std::string> names) { names_ = std::move(names); }
-  void offer_multipliers(int count) { multipliers_ = count; }
   void offer_derivatives(int order) { derivatives_ = order; }
   void add_reflection(Reflection r) { reflections_.push_back(std::move(r)); }
 
@@ -88,14 +81,12 @@ class Problem {
     do_residual(u, r);
     do_jacobian(u, j);
   }
-  virtual bool do_multipliers(In, Eigen::VectorXcd&) const { return false; }
   virtual void do_second(In, In, MatrixOut) const { throw std::logic_error("this problem has no second derivatives"); }
   virtual void do_third(In, In, In, In, Out) const { throw std::logic_error("this problem has no third derivatives"); }
 
   int n_, k_;
   bool flow_;
   int derivatives_ = 1;
-  int multipliers_ = 0;
   std::vector<std::string> names_;
   std::vector<Reflection> reflections_;
 };

@@ -56,6 +56,14 @@ void EquilibriumModel::validate() const {
   if (rhs.size() != variables.size()) throw std::invalid_argument(fmt::format("{} equations for {} variables", rhs.size(), variables.size()));
   if (initial.size() != variables.size())
     throw std::invalid_argument(fmt::format("{} initial values for {} variables", initial.size(), variables.size()));
+  for (const auto& a : amplitudes) {
+    if (a.variables.empty()) throw std::invalid_argument(fmt::format("the amplitude {} has no variables", a.name));
+    if (index_in(variables, a.name) >= 0) throw std::invalid_argument(fmt::format("an amplitude has the name of the variable {}", a.name));
+    for (const auto& name : a.variables)
+      if (index_in(variables, name) < 0)
+        throw std::invalid_argument(
+            fmt::format("an amplitude of '{}', which is no variable; the variables are {}", name, fmt::join(variables, ", ")));
+  }
   for (const auto& mirror : mirrors) {
     if (mirror.variables.empty()) throw std::invalid_argument("a reflection without variables");
     for (const auto& name : mirror.variables)

@@ -20,6 +20,12 @@ struct Mirror {
   std::string subtype = "PF";  ///< of a branch point that breaks the symmetry
 };
 
+/// The root of the sum of squares of some variables, under a name of its own.
+struct Amplitude {
+  std::string name;
+  std::vector<std::string> variables;
+};
+
 struct EquilibriumModel {
   struct Parameter {
     std::string name;
@@ -30,6 +36,7 @@ struct EquilibriumModel {
   std::vector<std::string> rhs;  ///< one for each variable
   std::vector<double> initial;   ///< a guess, one for each variable
   std::vector<Mirror> mirrors;
+  std::vector<Amplitude> amplitudes = {};
 
   int size() const { return static_cast<int>(variables.size()); }
   std::vector<std::string> parameter_names() const;

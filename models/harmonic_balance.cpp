@@ -192,7 +192,7 @@ HarmonicBalance::HarmonicBalance(const ParametricSystem& system, const HarmonicB
     : HarmonicBalance(system, options, shape_of(system, options)) {}
 
 HarmonicBalance::HarmonicBalance(const ParametricSystem& system, const HarmonicBalanceOptions& options, const ModalSystem<double>& shape)
-    : Problem(shape.size() * (2 * options.harmonics + 1), system.parameters(), false),
+    : OrbitProblem(shape.size() * (2 * options.harmonics + 1), system.parameters(), 2 * shape.size()),
       system_(system),
       options_(options),
       n_(shape.size()),
@@ -640,9 +640,103 @@ Truncation HarmonicBalance::truncation(In u) const {
   return {sum.maxCoeff(), largest > 0.0 ? moved.maxCoeff() / largest : moved.maxCoeff()};
 }
 
-const FloquetResult& HarmonicBalance::multipliers(In u, const Floquet::Blocks& blocks) const {
+const FloquetResult& HarmonicBalance::floquet(In u, const Floquet::Blocks& blocks) const {
   system_.at(std::span<const double>(u.data() + size(), at(parameters())), system_value_);
   return floquet_.compute(system_value_, u.head(size()), blocks);
+}
+
+// ---- stability ---------------------------------------------------------------------------------------------------------------
+
+unsigned HarmonicBalance::reflections_at(In u) const {
+  unsigned active = 0;
+  for (std::size_t r = 0; r < options_.reflections.size(); ++r) {
+    bool keeps = true;
+    for (int i = 0; i < n_ && keeps; ++i)
+      if (options_.reflections[r].signs[at(i)] < 0) keeps = (u.segment(i * width_, width_).array() == 0.0).all();
+    active |= keeps ? 1u << r : 0u;
+  }
+  return active;
+}
+
+int HarmonicBalance::group_of_coordinate(unsigned active, int coordinate) const {
+  // Group 0 keeps every sign; the others are numbered as their sign patterns appear.
+  const auto pattern = [&](int i) {
+    unsigned odd = 0;
+    for (std::size_t r = 0; r < options_.reflections.size(); ++r)
+      if ((active >> r & 1u) != 0 && options_.reflections[r].signs[at(i)] < 0) odd |= 1u << r;
+    return odd;
+  };
+  const unsigned own = pattern(coordinate);
+  if (own == 0) return 0;
+  int number = 1;
+  for (int i = 0; i < coordinate; ++i) {
+    const unsigned other = pattern(i);
+    if (other == own) return group_of_coordinate(active, i);
+    bool first = other != 0;
+    for (int l = 0; l < i && first; ++l) first = pattern(l) != other;
+    number += first ? 1 : 0;
+  }
+  return std::min(number, max_groups - 1);
+}
+
+bool HarmonicBalance::do_multipliers(In u, Eigen::VectorXcd& mu, Eigen::VectorXi& group) const {
+  const FloquetResult& result = floquet(u);
+  if (!result.converged) return false;
+  const unsigned active = reflections_at(u);
+  mu = result.multipliers;
+  Eigen::Index next = 0;
+  for (const auto& block : result.blocks) {
+    const auto count = 2 * static_cast<Eigen::Index>(block.size());
+    group.segment(next, count).setConstant(group_of_coordinate(active, block.front()));
+    next += count;
+  }
+  return true;
+}
+
+int HarmonicBalance::do_group_of_unknown(In u, int i) const { return group_of_coordinate(reflections_at(u), i / width_); }
+
+double HarmonicBalance::do_base_frequency(In u) const {
+  system_.at(std::span<const double>(u.data() + size(), at(parameters())), system_value_);
+  return system_value_.omega / nu();
+}
+
+// C = 2 d/dt + c: of y = a cos k theta + b sin k theta the rows of cos and sin get 2 k Omega b + c a, -2 k Omega a + c b.
+void HarmonicBalance::do_velocity(In u, int slope, MatrixOut out) const {
+  std::array<Slopes, max_parameters> p;
+  for (int k = 0; k < parameters(); ++k) p[at(k)] = seed<Slopes>(u[size() + k], k);
+  system_.at(std::span<const Slopes>(p.data(), at(parameters())), system_slopes_);
+  const auto part = [slope](const Slopes& x) { return slope < 0 ? x.v : x.d[at(slope)]; };
+  const double base = part(system_slopes_.omega) / nu();
+  out.setZero();
+  for (int i = 0; i < n_; ++i) {
+    out.diagonal().segment(i * width_, width_).setConstant(part(system_slopes_.damping[at(i)]));
+    for (int k = 1; k <= harmonics(); ++k) {
+      out(index(i, k), index(i, k) + 1) = 2.0 * k * base;
+      out(index(i, k) + 1, index(i, k)) = -2.0 * k * base;
+    }
+  }
+}
+
+const OrbitProblem& HarmonicBalance::do_doubled() const {
+  if (!doubled_.problem) doubled_.problem = std::make_shared<const HarmonicBalance>(with_nu(2 * nu(), 2 * harmonics()));
+  return *doubled_.problem;
+}
+
+Vector HarmonicBalance::do_in_doubled(In u) const {
+  (void)do_doubled();
+  return doubled_.problem->carry(*this, u);
+}
+
+Vector HarmonicBalance::do_from_doubled(In u) const {
+  (void)do_doubled();
+  Vector v(size() + parameters());
+  v.tail(parameters()) = u.tail(parameters());
+  for (int i = 0; i < n_; ++i)
+    for (int k = 0; k <= harmonics(); ++k) {
+      v[index(i, k)] = u[doubled_.problem->index(i, 2 * k)];
+      if (k > 0) v[index(i, k) + 1] = u[doubled_.problem->index(i, 2 * k) + 1];
+    }
+  return v;
 }
 
 // ---- start values and other numbers of harmonics ---------------------------------------------------------------------------

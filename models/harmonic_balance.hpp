@@ -9,13 +9,15 @@
 /// q in m, r in m/s^2. The terms are sampled at so many instants that no harmonic of theirs is mistaken for one kept: residual, Jacobian and
 /// higher derivatives are exact. Transforms fold theta and theta + pi together, so harmonics that a symmetry forbids stay zero to the last bit.
 ///
+/// Multipliers are those of `Floquet` (floquet.hpp), grouped by the signs of their coordinates under the reflections that the motion keeps.
+///
 /// Reflections told to the engine, each checked on the residual at construction: coordinate reflections given ("WH" of the stay), the shift
 /// by half a base period where it is a symmetry by itself ("PD": for nu = 2 the shift by one excitation period), and combined with signs ("SB").
 ///
 ///     HarmonicBalance hb = stay_harmonic_balance(stay, {Lens("omega")}, {.harmonics = 20});
 ///     NewtonResult at = newton(hb, hb.linear_response(p));
 ///     hb.observe(at.x)(1, 2);                    // complex amplitude of cos(2 Omega t + phase) in q2
-///     hb.multipliers(at.x).multipliers;          // Floquet multipliers over nu excitation periods
+///     hb.floquet(at.x).multipliers;              // Floquet multipliers over nu excitation periods
 ///     Orbit orbit = solve_orbit(hb, at.x, {.tolerance = 1e-9});   // with as many harmonics as that needs
 ///
 /// Throws std::invalid_argument for options out of range and reflections that are none. Objects hold scratch memory: one per thread.
@@ -26,6 +28,7 @@
 #include <optional>
 
 #include "core/newton.hpp"
+#include "core/orbit_problem.hpp"
 #include "models/floquet.hpp"
 #include "models/nielsen_kirkegaard.hpp"
 #include "models/steady_motion.hpp"
@@ -111,7 +114,7 @@ struct Truncation {
   double error;     ///< bound on the change of any coordinate, over the largest amplitude
 };
 
-class HarmonicBalance : public Problem {
+class HarmonicBalance : public OrbitProblem {
  public:
   HarmonicBalance(const ParametricSystem& system, const HarmonicBalanceOptions& options);
 
@@ -131,7 +134,7 @@ class HarmonicBalance : public Problem {
   /// Largest amplitude of the last two harmonics (of each parity of k) over the largest of all.
   double tail(In u) const;
   Truncation truncation(In u) const;
-  const FloquetResult& multipliers(In u, const Floquet::Blocks& blocks = {}) const;
+  const FloquetResult& floquet(In u, const Floquet::Blocks& blocks = {}) const;
 
   /// Start values (x, p): the response without the terms, and the harmonics of a settled periodic motion.
   Vector linear_response(In p) const;
@@ -156,6 +159,15 @@ class HarmonicBalance : public Problem {
   void do_linearise(In u, Out r, MatrixOut j) const override;
   void do_second(In u, In v, MatrixOut h) const override;
   void do_third(In u, In a, In b, In c, Out t) const override;
+  bool do_multipliers(In u, Eigen::VectorXcd& mu, Eigen::VectorXi& group) const override;
+  int do_group_of_unknown(In u, int i) const override;
+  void do_velocity(In u, int slope, MatrixOut c) const override;
+  double do_base_frequency(In u) const override;
+  const OrbitProblem& do_doubled() const override;
+  Vector do_in_doubled(In u) const override;
+  Vector do_from_doubled(In u) const override;
+  unsigned reflections_at(In u) const;                             // coordinate reflections that leave the motion in place
+  int group_of_coordinate(unsigned active, int coordinate) const;  // by its signs under them
 
   template <class Q>
   void differentiate(const ModalSystem<Dual<Q, ParametricSystem::max_parameters>>& system, Samples<Q>& s, double* r, MatrixOut j) const;
@@ -189,6 +201,14 @@ class HarmonicBalance : public Problem {
   mutable std::shared_ptr<const HarmonicTransform> fine_;  // of `truncation`: all harmonics the terms can make
   mutable Matrix fine_cosine_;
   mutable Floquet floquet_;
+  // Made on demand and not copied: a copy is another object with scratch memory of its own.
+  struct OnDemand {
+    OnDemand() = default;
+    OnDemand(const OnDemand&) {}
+    OnDemand& operator=(const OnDemand&) { return *this; }
+    std::shared_ptr<const HarmonicBalance> problem;
+  };
+  mutable OnDemand doubled_;
 };
 
 /// The stay's balance with its reflection q1 -> -q1, subtype "WH".

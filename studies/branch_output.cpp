@@ -1,5 +1,7 @@
 #include "studies/branch_output.hpp"
 
+#include "continuation/normal_form.hpp"
+
 #include <fmt/format.h>
 
 #include <cmath>
@@ -8,6 +10,7 @@ namespace whirl::studies {
 namespace {
 
 using continuation::Branch;
+using continuation::criticality;
 using continuation::EventType;
 using continuation::SpecialPoint;
 
@@ -57,6 +60,7 @@ void BranchOutput::write_branch(ResultFile& file, const Branch& b) const {
   file.attribute(group, "born_at", b.born_at);
   file.attribute(group, "start_reason", std::string(to_string(b.start_reason)));
   file.attribute(group, "stop_reason", std::string(to_string(b.stop_reason)));
+  file.attribute(group, "isola", b.isola ? 1.0 : 0.0);
   file.attribute(group, "mirror_image_exists", b.active_reflections.empty() ? 1.0 : 0.0);
 }
 
@@ -65,7 +69,8 @@ void BranchOutput::write_special_points(ResultFile& file, const std::vector<Bran
   std::vector<const SpecialPoint*> points;
   TextColumn names{"branch", "branch the point lies on", {}}, labels{"label", "type and running number on the branch", {}},
       types{"type", "LP fold, BP branch point, HB Hopf, UZ user value, RP peak, PD period doubling, TR torus, unresolved", {}},
-      subtypes{"subtype", "WH whirling starts, PF pitchfork, TC transcritical, or the peak's quantity", {}};
+      subtypes{"subtype", "WH whirling starts, PF pitchfork, TC transcritical, or the peak's quantity", {}},
+      criticalities{"criticality", "supercritical or subcritical, of pitchforks and Hopf points", {}};
   for (const auto& b : branches)
     for (std::size_t i = 0; i < b.special.size(); ++i) {
       const auto& s = b.special[i];
@@ -74,6 +79,7 @@ void BranchOutput::write_special_points(ResultFile& file, const std::vector<Bran
       labels.values.push_back(label(b, i));
       types.values.emplace_back(to_string(s.type));
       subtypes.values.push_back(s.subtype);
+      criticalities.values.push_back(criticality(s));
     }
   std::vector<Column> table;
   const auto add = [&](const std::string& name, const std::string& unit, const std::string& description, auto value) {
@@ -94,7 +100,7 @@ void BranchOutput::write_special_points(ResultFile& file, const std::vector<Bran
   add("bracket_lower", parameter_unit, "the test function changes between bracket_lower and bracket_upper",
       [](const SpecialPoint& s) { return s.bracket[0]; });
   add("bracket_upper", parameter_unit, "see bracket_lower", [](const SpecialPoint& s) { return s.bracket[1]; });
-  file.table("/special_points", table, {names, labels, types, subtypes});
+  file.table("/special_points", table, {names, labels, types, subtypes, criticalities});
 }
 
 std::string BranchOutput::json(const std::vector<Branch>& branches) const {
@@ -110,12 +116,13 @@ std::string BranchOutput::json(const std::vector<Branch>& branches) const {
       for (const auto& column : columns) o += fmt::format(R"(, "{}": {})", column.name, json_number(column.value(s.u)));
       if (s.type == EventType::hopf) o += fmt::format(R"(, "frequency": {})", json_number(s.frequency));
       if (s.has_coefficient) o += fmt::format(R"(, "coefficient": {})", json_number(s.coefficient));
+      if (const std::string how = criticality(s); !how.empty()) o += fmt::format(R"(, "criticality": "{}")", how);
       o += fmt::format(R"(, "residual": {}, "bracket": [{}, {}]}})", json_number(s.residual), json_number(s.bracket[0]), json_number(s.bracket[1]));
       points += (points.empty() ? "\n    " : ",\n    ") + o;
     }
-    summary +=
-        fmt::format(R"({}    {{"name": {}, "born_at": {}, "points": {}, "start_reason": "{}", "stop_reason": "{}"}})", summary.empty() ? "\n" : ",\n",
-                    json_text(b.name), json_text(b.born_at), b.points(), to_string(b.start_reason), to_string(b.stop_reason));
+    summary += fmt::format(R"({}    {{"name": {}, "born_at": {}, "points": {}, "start_reason": "{}", "stop_reason": "{}", "isola": {}}})",
+                           summary.empty() ? "\n" : ",\n", json_text(b.name), json_text(b.born_at), b.points(), to_string(b.start_reason),
+                           to_string(b.stop_reason), b.isola);
   }
   return fmt::format("{{\n  \"special_points\": [{}\n  ],\n  \"branches\": [{}\n  ]\n}}\n", points, summary);
 }
@@ -125,7 +132,7 @@ std::string BranchOutput::text(const std::vector<Branch>& branches) const {
   // Amplitudes only: phases and derived numbers stand in the file.
   std::vector<const PointColumn*> shown;
   for (const auto& c : columns)
-    if (c.unit == "m" && c.name.starts_with("q") && shown.size() < 5) shown.push_back(&c);
+    if (((c.unit == "m" && c.name.starts_with("q")) || c.shown) && shown.size() < 5) shown.push_back(&c);
   out += fmt::format("{:<7} {:<6} {:<10} {:>18}", "branch", "point", "subtype", fmt::format("{} [{}]", parameter, parameter_unit));
   for (const auto* c : shown) out += fmt::format(" {:>14}", fmt::format("{} [{}]", c->name, c->unit));
   out += fmt::format(" {:>9} {:>9}\n", "unstable", "residual");
@@ -134,10 +141,13 @@ std::string BranchOutput::text(const std::vector<Branch>& branches) const {
       const auto& s = b.special[i];
       out += fmt::format("{:<7} {:<6} {:<10} {:>18.11f}", b.name, label(b, i), s.subtype, s.u[s.u.size() - 1]);
       for (const auto* c : shown) out += fmt::format(" {:>14.8f}", c->value(s.u));
-      out += fmt::format(" {:>9} {:>9.1e}\n", fmt::format("{} -> {}", s.unstable_before, s.unstable_after), s.residual);
+      const std::string how = criticality(s);
+      out +=
+          fmt::format(" {:>9} {:>9.1e}{}{}\n", fmt::format("{} -> {}", s.unstable_before, s.unstable_after), s.residual, how.empty() ? "" : " ", how);
     }
   for (const auto& b : branches)
-    out += fmt::format("branch {:<7} {:>5} points, born at {}, ends: {}\n", b.name, b.points(), b.born_at.empty() ? "-" : b.born_at, ends(b));
+    out += fmt::format("branch {:<7} {:>5} points{}, born at {}, ends: {}\n", b.name, b.points(), b.isola ? ", an isola" : "",
+                       b.born_at.empty() ? "-" : b.born_at, ends(b));
   return out;
 }
 

@@ -12,6 +12,7 @@ namespace whirl::studies {
 struct PointColumn {
   std::string name, unit, description;
   std::function<double(In u)> value;
+  bool shown = false;  ///< in the printed table; amplitudes q.. in m always are
 };
 
 struct BranchOutput {

@@ -305,6 +305,13 @@ Schema& Schema::add_free(FreeSection section) {
   return *this;
 }
 
+Schema& Schema::add_alternative(Alternative alternative) {
+  for (const std::string& name : alternative.free_sections)
+    if (!find_free(name)) throw std::invalid_argument(fmt::format("{}: alternative {} is no free section", kind_, name));
+  alternatives_.push_back(std::move(alternative));
+  return *this;
+}
+
 const Key* Schema::find(std::string_view name) const {
   const auto it = std::find_if(keys_.begin(), keys_.end(), [&](const Key& key) { return key.name == name; });
   return it == keys_.end() ? nullptr : &*it;
@@ -409,9 +416,10 @@ class Configuration::Reader {
 
   void read() {
     visit_table(root_, "");
+    for (const Alternative& a : schema().alternatives()) check_alternative(a);
     for (const Key& key : into_.schema_.keys()) {
-      if (into_.values_.contains(key.name)) continue;
-      if (key.required) missing(key.name, "must be " + key.accepted());
+      if (into_.values_.contains(key.name) || !replaced_by(key).empty()) continue;
+      if (key.required) missing(key.name, "must be " + key.accepted() + instead_of(key));
       if (!key.optional) into_.values_[key.name] = key.default_value;
     }
     for (const FreeSection& section : into_.schema_.free_sections())
@@ -420,6 +428,35 @@ class Configuration::Reader {
 
  private:
   const Schema& schema() const { return into_.schema_; }
+
+  /// The free section present that stands in for the key's section; "" if none.
+  std::string replaced_by(const Key& key) const {
+    for (const Alternative& a : schema().alternatives())
+      if (std::find(a.sections.begin(), a.sections.end(), section_of(key.name)) != a.sections.end())
+        for (const std::string& name : a.free_sections)
+          if (into_.raw_.contains(name)) return name;
+    return "";
+  }
+
+  /// "; or give [modal_model]" for a key that another section may stand in for.
+  std::string instead_of(const Key& key) const {
+    for (const Alternative& a : schema().alternatives())
+      if (std::find(a.sections.begin(), a.sections.end(), section_of(key.name)) != a.sections.end())
+        return fmt::format("; or give [{}] in place of [{}]", fmt::join(a.free_sections, "] or ["), section_of(key.name));
+    return "";
+  }
+
+  void check_alternative(const Alternative& a) const {
+    std::string present;
+    for (const std::string& name : a.free_sections) {
+      if (!into_.raw_.contains(name)) continue;
+      if (!present.empty()) throw InputError(fmt::format("{}: [{}]: is not taken beside [{}]", into_.place(name), name, present));
+      present = name;
+    }
+    for (const Key& key : schema().keys())
+      if (into_.values_.contains(key.name) && !replaced_by(key).empty())
+        throw into_.error(key.name, fmt::format("is not taken beside [{}]", replaced_by(key)));
+  }
 
   void visit_table(const toml::table& table, const std::string& section) {
     for (const auto& [key, node] : table) {

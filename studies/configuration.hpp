@@ -67,6 +67,12 @@ struct FreeSection {
   bool required = false;
 };
 
+/// Sections that give way to a free section: a study takes a [cable] and what belongs to it, or a [modal_model].
+struct Alternative {
+  std::vector<std::string> sections = {};       ///< "cable", "support_motion"
+  std::vector<std::string> free_sections = {};  ///< any one of them stands in for all of `sections`
+};
+
 class Schema {
  public:
   Schema(std::string kind, std::string summary) : kind_(std::move(kind)), summary_(std::move(summary)) {}
@@ -74,11 +80,14 @@ class Schema {
   /// Throws std::invalid_argument for a repeated name or a default outside the key's own range.
   Schema& add(Key key);
   Schema& add_free(FreeSection section);
+  /// Where a free section of it is present, keys of its sections are refused, have no value and are not required.
+  Schema& add_alternative(Alternative alternative);
 
   const std::string& kind() const { return kind_; }
   const std::string& summary() const { return summary_; }
   const std::vector<Key>& keys() const { return keys_; }
   const std::vector<FreeSection>& free_sections() const { return free_sections_; }
+  const std::vector<Alternative>& alternatives() const { return alternatives_; }
   const Key* find(std::string_view name) const;                  ///< null if unknown
   const FreeSection* find_free(std::string_view section) const;  ///< null if unknown
   bool has_section(std::string_view section) const;              ///< some key's name starts with "section."
@@ -89,6 +98,7 @@ class Schema {
   std::string kind_, summary_;
   std::vector<Key> keys_;
   std::vector<FreeSection> free_sections_;
+  std::vector<Alternative> alternatives_;
 };
 
 /// The candidate with the smallest Damerau-Levenshtein distance to `name`; "" if even that is more than a third of the name away.

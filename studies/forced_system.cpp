@@ -4,6 +4,7 @@
 
 #include "studies/cable_model_keys.hpp"
 #include "studies/common_keys.hpp"
+#include "studies/modal_model_input.hpp"
 
 namespace whirl::studies {
 
@@ -15,12 +16,27 @@ ModalSystem<double> ForcedSystem::at(In p) const {
   return s;
 }
 
+namespace {
+
+ForcedSystem of_modal_model(const Configuration& c, const std::vector<std::string>& lenses) {
+  const ModalModel model = modal_model_of(c);
+  ForcedSystem s{modal_system_of(c, lenses), mirrors(model, lenses), {}, "-", {}};
+  for (int i = 0; i < model.size(); ++i) s.coordinates.push_back(fmt::format("q{}", i + 1));
+  for (const auto& lens : lenses) s.lens_units.push_back(model.lens_unit(lens));
+  return s;
+}
+
+}  // namespace
+
 void add_forced_system_keys(Schema& schema) {
   add_stay_keys(schema, true);
   add_model_keys(schema);
+  schema.add_free(modal_model_section());
+  schema.add_alternative({.sections = {"cable", "model", "damping", "support_motion"}, .free_sections = {"modal_model"}});
 }
 
 ForcedSystem forced_system_of(const Configuration& c, const std::vector<std::string>& lenses) {
+  if (c.has("modal_model")) return of_modal_model(c, lenses);
   std::vector<Lens> chosen;
   std::vector<std::string> units;
   for (const auto& name : lenses) try {
@@ -37,10 +53,16 @@ ForcedSystem forced_system_of(const Configuration& c, const std::vector<std::str
 }
 
 std::vector<std::string> check_forced_system(const Configuration& c) {
-  (void)cable_model_of(c);
-  return check_cable(c);
+  if (!c.has("modal_model")) {
+    (void)cable_model_of(c);
+    return check_cable(c);
+  }
+  (void)modal_model_of(c);
+  return {};
 }
 
-void write_forced_system(ResultFile& file, const Configuration& c) { write_cable_numbers(file, stay_of(c).cable); }
+void write_forced_system(ResultFile& file, const Configuration& c) {
+  if (!c.has("modal_model")) write_cable_numbers(file, stay_of(c).cable);
+}
 
 }  // namespace whirl::studies

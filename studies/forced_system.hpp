@@ -22,7 +22,7 @@ struct ForcedSystem {
   models::ModalSystem<double> at(In p) const;  ///< with the parameters at p
 };
 
-/// [cable], [model], [damping], [support_motion], omega.
+/// [cable], [model], [damping], [support_motion], or [modal_model] in their place; omega.
 void add_forced_system_keys(Schema& schema);
 ForcedSystem forced_system_of(const Configuration& c, const std::vector<std::string>& lenses);
 /// Warnings about the validity of the model; refusals as InputError.

@@ -10,7 +10,6 @@
 #include "models/statics.hpp"
 #include "studies/cable_model_keys.hpp"
 #include "studies/common_keys.hpp"
-#include "studies/forced_system.hpp"
 #include "studies/whirl_threshold.hpp"
 
 namespace whirl::studies {
@@ -23,7 +22,8 @@ constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 Schema schema() {
   Schema s("mode-convergence", "whirling threshold and peak amplitude of a cable against the number of modes");
-  add_forced_system_keys(s);
+  add_stay_keys(s, true);
+  add_model_keys(s);
   s.add({.name = "convergence.counts",
          .description = "numbers of modes in each plane, a model each",
          .default_value = std::vector<double>{1, 2, 3, 4, 6},
@@ -102,7 +102,7 @@ Setup setup(const Configuration& c) {
 
 std::vector<std::string> check(const Configuration& c) {
   (void)setup(c);
-  return check_forced_system(c);
+  return check_cable(c);
 }
 
 struct Row {
@@ -265,7 +265,7 @@ ExitStatus run(const Configuration& c, RunContext& context) {
   for (const auto& w : check(c)) context.warn(w);
   ResultFile file(context.output);
   write_study(file, c);
-  write_forced_system(file, c);
+  write_cable_numbers(file, s.base.stay.cable);
   std::vector<Row> rows;
   for (const Longitudinal t : s.treatments)
     for (const int n : s.counts) {

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "studies/continuation_study.hpp"
 #include "studies/mode_convergence_study.hpp"
 #include "studies/modes_study.hpp"
 #include "studies/superharmonic_study.hpp"
@@ -10,7 +11,8 @@
 namespace whirl::studies {
 
 const std::vector<StudyKind>& study_kinds() {
-  static const std::vector<StudyKind> kinds = {superharmonic_study(), two_parameter_study(), modes_study(), mode_convergence_study()};
+  static const std::vector<StudyKind> kinds = {superharmonic_study(), continuation_study(), two_parameter_study(), modes_study(),
+                                               mode_convergence_study()};
   return kinds;
 }
 

@@ -1,0 +1,119 @@
+#include "studies/continuation_study.hpp"
+
+#include <fmt/format.h>
+
+#include "continuation/deflation.hpp"
+#include "studies/common_keys.hpp"
+#include "studies/equilibrium_source.hpp"
+
+namespace whirl::studies {
+namespace {
+
+using namespace continuation;
+
+struct Setup {
+  std::unique_ptr<EquilibriumSource> source;
+  std::string parameter;
+  NetworkOptions network;
+  std::vector<std::vector<double>> seeds;
+};
+
+Schema schema() {
+  Schema s("continuation", "rest points of any system given as expressions, or of a cable's averaged slow flow, as one parameter varies");
+  add_equilibrium_source_keys(s);
+  add_continuation_keys(s, "omega");
+  s.add({.name = "continuation.peaks",
+         .description = "variables or amplitudes whose extrema along the branches are reported as RP",
+         .default_value = std::vector<std::string>{}});
+  s.add({.name = "continuation.seeds",
+         .description = "starts of further branches: the variables and then the parameter, one start after the other",
+         .default_value = std::vector<double>{}});
+  s.add({.name = "continuation.deflate_at",
+         .description = "parameter values at which further solutions are looked for by deflation when all branches are known",
+         .default_value = std::vector<double>{}});
+  return s;
+}
+
+Setup setup(const Configuration& c) {
+  Setup s;
+  s.source = equilibrium_source(c);
+  s.parameter = c.text("continuation.parameter");
+  s.network = network_of(c);
+  s.source->check_lens("continuation.parameter", s.parameter, "continuation.range", s.network.walk.lower, s.network.walk.upper);
+  s.network.walk.peaks = peaks_of(c, *s.source);
+  const auto& seeds = c.numbers("continuation.seeds");
+  const auto width = static_cast<std::size_t>(s.source->problem({s.parameter})->size()) + 1;
+  if (seeds.size() % width != 0)
+    throw c.error("continuation.seeds", fmt::format("must hold groups of {} numbers: the variables, then {}", width, s.parameter));
+  for (std::size_t i = 0; i < seeds.size(); i += width)
+    s.seeds.emplace_back(seeds.begin() + static_cast<std::ptrdiff_t>(i), seeds.begin() + static_cast<std::ptrdiff_t>(i + width));
+  for (const double p : c.numbers("continuation.deflate_at"))
+    if (p < s.network.walk.lower || p > s.network.walk.upper) throw c.error("continuation.deflate_at", "each value must lie in continuation.range");
+  return s;
+}
+
+std::vector<std::string> check(const Configuration& c) { return setup(c).source->warnings(); }
+
+void explore(const Problem& f, const Setup& s, Network& net, const std::vector<double>& deflate_at, RunContext& context) {
+  for (const Start& start : s.source->starts(f, s.parameter, s.network.walk.lower, s.network.walk.upper)) {
+    try_seed(net, start.u, start.origin, context);
+    net.switch_branches();
+  }
+  for (std::size_t i = 0; i < s.seeds.size(); ++i) {
+    try_seed(net, Eigen::Map<const Vector>(s.seeds[i].data(), f.size() + 1), fmt::format("seed {}", i + 1), context);
+    net.switch_branches();
+  }
+  for (const double p : deflate_at) {
+    std::vector<Vector> known;
+    for (const auto& [branch, u] : net.solutions_at(p)) known.push_back(u);
+    std::vector<Vector> starts = known;
+    for (auto& u : starts) u.head(f.size()) *= 1.1;
+    for (const auto& b : net.branches())  // whatever the branches pass through, seen at p
+      for (int i = 0; i < b.points(); i += std::max(1, b.points() / 5)) {
+        starts.push_back(b.u(i));
+        starts.back()[f.size()] = p;
+      }
+    const auto all = deflated_solutions(f, known, starts);
+    for (std::size_t i = known.size(); i < all.size(); ++i) {
+      try_seed(net, all[i], fmt::format("deflation at {} = {:.6g}", s.parameter, p), context);
+      net.switch_branches();
+    }
+  }
+  if (net.branches().empty()) context.warn("no rest point was found in the range");
+}
+
+ExitStatus run(const Configuration& c, RunContext& context) {
+  const Setup s = setup(c);
+  for (const auto& w : s.source->warnings()) context.warn(w);
+  const auto f = s.source->problem({s.parameter});
+  BranchOutput output;
+  output.parameter = s.parameter;
+  output.parameter_unit = s.source->unit(s.parameter);
+  output.columns = s.source->columns(*f);
+  ResultFile file(context.output);
+  write_study(file, c);
+  s.source->write(file);
+  Network net(*f, s.network);
+  net.set_namer(s.source->namer());
+  net.set_observer([&](const Branch& b, int i) {
+    if (i % 50 == 0) context.progress.show(fmt::format("branch at {} = {:.6g}, {} points", s.parameter, b.parameter(i), i));
+    return !interrupted;
+  });
+  net.on_branch([&](const Branch& b) {
+    output.write_branch(file, b);
+    file.flush();
+  });
+  explore(*f, s, net, c.numbers("continuation.deflate_at"), context);
+  output.write_special_points(file, net.branches());
+  file.flush();
+  context.progress.clear();
+  if (context.json) fmt::print("{}", output.json(net.branches()));
+  if (!context.quiet) fmt::print(stderr, "{}", output.text(net.branches()));
+  return finish(file, context, net.branches());
+}
+
+}  // namespace
+
+StudyKind continuation_study() { return {schema(), run, check}; }
+
+}  // namespace whirl::studies

@@ -1,0 +1,72 @@
+#include "studies/equilibrium_model_input.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "studies/section_reader.hpp"
+
+namespace whirl::studies {
+
+using models::EquilibriumModel;
+
+FreeSection equilibrium_model_section(bool required) {
+  return {.name = "equilibrium_model",
+          .description = "rest points of x' = f(x, p), f as expressions",
+          .example = R"toml([equilibrium_model]
+variables = ["x", "y", "z"]
+parameters = { sigma = 10.0, rho = 0.5, beta = 2.6666666666666667 }
+rhs = ["sigma*(y - x)", "x*(rho - z) - y", "x*y - beta*z"]
+initial = [0.0, 0.0, 0.0]         # near a rest point at the lower end of continuation.range
+mirrors = [["x", "y"]]            # optional: variables that change sign together without changing the equations
+amplitudes = { R = ["x", "y"] }   # optional: roots of sums of squares, as further columns
+mirror_subtype = "PF"             # name of branch points that break such a symmetry)toml",
+          .required = required};
+}
+
+EquilibriumModel equilibrium_model_of(const Configuration& c) {
+  const SectionReader m(c, "equilibrium_model");
+  EquilibriumModel model;
+  model.variables = m.texts("variables");
+  for (const auto& [name, value] : m.named_numbers("parameters")) model.parameters.push_back({name, value});
+  model.rhs = m.texts("rhs");
+  model.initial = m.numbers("initial");
+  const std::string subtype = m.text("mirror_subtype", "PF");
+  if (m.has("mirrors"))
+    for (auto& names : m.text_rows("mirrors")) model.mirrors.push_back({std::move(names), subtype});
+  if (m.has("amplitudes"))
+    for (auto& [name, variables] : m.named_texts("amplitudes")) model.amplitudes.push_back({name, std::move(variables)});
+  m.no_others();
+  const std::size_t n = model.variables.size();
+  if (n == 0) throw m.error("variables", "must be an array of at least 1 name");
+  if (model.rhs.size() != n) throw m.error("rhs", fmt::format("must be an array of {} expressions, one for each variable", n));
+  if (model.initial.size() != n) throw m.error("initial", fmt::format("must be an array of {} numbers, one for each variable", n));
+  if (model.mirrors.size() > 3) throw m.error("mirrors", "must be at most 3");
+  try {
+    model.validate();
+  } catch (const std::invalid_argument& e) {
+    const std::string_view what = e.what();
+    throw m.error(what.find("amplitude") != what.npos ? "amplitudes" : what.find("reflection") != what.npos ? "mirrors" : "variables", e.what());
+  }
+  try {
+    const models::EquilibriumFlow tried(model, {});
+    Vector r(static_cast<Eigen::Index>(n));
+    tried.residual(Eigen::Map<const Vector>(model.initial.data(), r.size()), r);
+    if (!r.allFinite()) throw m.error("initial", "must be a point where every expression of rhs is finite");
+  } catch (const models::ExpressionError& e) {
+    if (e.equation == 0) throw m.error("variables", e.reason);
+    throw m.error("rhs", fmt::format("expression {}: {}", e.equation, e.reason));
+  } catch (const std::invalid_argument& e) {
+    throw m.error(model.mirrors.empty() ? "variables" : "mirrors", e.what());
+  }
+  return model;
+}
+
+void check_equilibrium_lens(const Configuration& c, const EquilibriumModel& model, const std::string& key, const std::string& lens) {
+  const auto names = model.parameter_names();
+  if (std::find(names.begin(), names.end(), lens) != names.end()) return;
+  const std::string guess = nearest(lens, names);
+  throw c.error(key, guess.empty() ? fmt::format("no such parameter; the model has {}", fmt::join(names, ", "))
+                                   : fmt::format("no such parameter, did you mean {}?", guess));
+}
+
+}  // namespace whirl::studies

@@ -1,0 +1,225 @@
+#include "studies/equilibrium_source.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <numbers>
+
+#include "continuation/deflation.hpp"
+#include "core/kinsol.hpp"
+#include "models/closed_forms.hpp"
+#include "studies/common_keys.hpp"
+#include "studies/equilibrium_model_input.hpp"
+
+namespace whirl::studies {
+namespace {
+
+using namespace models;
+using namespace continuation;
+
+/// Averaged superharmonic response of a stay.
+class StaySource : public EquilibriumSource {
+ public:
+  explicit StaySource(const Configuration& c)
+      : c_(c), stay_(stay_of(c)), options_{static_cast<int>(c.integer("response.order")), coefficients_of(c)}, warnings_(check_cable(c)) {}
+
+  std::unique_ptr<Problem> problem(const std::vector<std::string>& names) const override {
+    std::vector<Lens> lenses;
+    for (const auto& name : names) lenses.emplace_back(name);
+    return std::make_unique<SuperharmonicFlow>(stay_, options_, lenses);
+  }
+  double value(const std::string& lens) const override { return Lens(lens).get(stay_); }
+  std::string unit(const std::string& lens) const override { return std::string(Lens(lens).unit()); }
+  std::vector<std::string> warnings() const override { return warnings_; }
+
+  void check_lens(const std::string& key, const std::string& name, const std::string& range_key, double lower, double upper) const override {
+    if (key == "continuation.parameter") {
+      WalkOptions walk;
+      walk.lower = lower;
+      walk.upper = upper;
+      return check_lens_range(c_, name, walk);
+    }
+    try {
+      const Lens lens(name);
+      const auto outside = [&](double x) { return x < lens.lower() || x > lens.upper() || (x == lens.lower() && name == "omega"); };
+      if (outside(lower) || outside(upper))
+        throw c_.error(range_key, fmt::format("must lie in ({:g}, {:g}) [{}], the range of {}", lens.lower(), lens.upper(), lens.unit(), name));
+    } catch (const std::invalid_argument& e) {
+      const std::string guess = nearest(name, Lens::names());
+      throw c_.error(key, guess.empty() ? e.what() : fmt::format("no such parameter, did you mean {}?", guess));
+    }
+  }
+
+  std::vector<PointColumn> columns(const Problem& f) const override {
+    const auto& flow = dynamic_cast<const SuperharmonicFlow&>(f);
+    std::vector<PointColumn> all;
+    const auto add = [&](const std::string& name, const std::string& unit, const std::string& description, auto value) {
+      all.push_back({name, unit, description, [&flow, value](In u) { return value(flow.observe(u)); }});
+    };
+    add(amplitude(1), "m", "A: amplitude of cos(n omega t + phase) in q1, out of plane", [](const Superharmonic& o) { return o.A; });
+    add(amplitude(2), "m", "B: amplitude of cos(n omega t + phase) in q2, in plane", [](const Superharmonic& o) { return o.B; });
+    add("q2_h1", "m", "B0: amplitude of cos(omega t + phase) in q2, linear forced response", [](const Superharmonic& o) { return o.B0; });
+    add(amplitude(1) + "_phase", "rad", "Psi1", [](const Superharmonic& o) { return o.Psi1; });
+    add(amplitude(2) + "_phase", "rad", "Psi2", [](const Superharmonic& o) { return o.Psi2; });
+    static constexpr const char* state[] = {"u1", "v1", "u2", "v2"};
+    for (int i = 0; i < 4; ++i) all.push_back({state[i], "m", "Cartesian van der Pol coordinate", [i](In u) { return u[i]; }});
+    return all;
+  }
+  std::vector<Observable> observables() const override {
+    return {{.name = amplitude(1), .form = QuadraticForm::square_sum(4, {0, 1})},
+            {.name = amplitude(2), .form = QuadraticForm::square_sum(4, {2, 3})}};
+  }
+  Network::Namer namer() const override {
+    return [](const Branch& b) { return b.active_reflections.empty() ? "W" : "IP"; };
+  }
+
+  // From rest, then every closed-form solution on a grid.
+  std::vector<Start> starts(const Problem& f, const std::string& lens, double lower, double upper) const override {
+    constexpr int grid = 60;
+    const auto& flow = dynamic_cast<const SuperharmonicFlow&>(f);
+    std::vector<Start> all;
+    for (int i = 0; i <= grid; ++i) {
+      const double p = lower + (upper - lower) * i / grid;
+      const auto k = flow.model().coefficients<double>(std::array<double, 1>{p});
+      for (const auto& states : {in_plane_states(k), coupled_states(k)})
+        for (const auto& x : states) {
+          Vector u(5);
+          u << x, p;
+          all.push_back({u, fmt::format("closed form at {} = {:.6g}", lens, p)});
+        }
+    }
+    return all;
+  }
+  void write(ResultFile& file) const override { write_cable_numbers(file, stay_.cable); }
+
+ private:
+  std::string amplitude(int coordinate) const { return fmt::format("q{}_h{}", coordinate, options_.order); }
+
+  Configuration c_;
+  StayParameters<double> stay_;
+  SuperharmonicOptions options_;
+  std::vector<std::string> warnings_;
+};
+
+/// Rest points of a system given as text.
+class ExpressionSource : public EquilibriumSource {
+ public:
+  explicit ExpressionSource(const Configuration& c) : c_(c), model_(equilibrium_model_of(c)) {}
+
+  std::unique_ptr<Problem> problem(const std::vector<std::string>& lenses) const override {
+    return std::make_unique<EquilibriumFlow>(model_, lenses);
+  }
+  double value(const std::string& lens) const override { return model_.parameter(lens); }
+  std::string unit(const std::string&) const override { return "-"; }
+  std::vector<std::string> warnings() const override { return {}; }
+  void check_lens(const std::string& key, const std::string& lens, const std::string&, double, double) const override {
+    check_equilibrium_lens(c_, model_, key, lens);
+  }
+
+  std::vector<PointColumn> columns(const Problem&) const override {
+    std::vector<PointColumn> all;
+    for (const auto& a : model_.amplitudes)
+      all.push_back({a.name, "-", "root of the sum of squares of " + fmt::format("{}", fmt::join(a.variables, ", ")),
+                     [of = indices(a)](In u) {
+                       double sum = 0.0;
+                       for (const int i : of) sum += u[i] * u[i];
+                       return std::sqrt(sum);
+                     },
+                     true});
+    for (int i = 0; i < model_.size(); ++i)
+      all.push_back({model_.variables[static_cast<std::size_t>(i)], "-", "variable", [i](In u) { return u[i]; }, true});
+    return all;
+  }
+  std::vector<Observable> observables() const override {
+    std::vector<Observable> all;
+    for (const auto& a : model_.amplitudes) all.push_back({.name = a.name, .form = QuadraticForm::square_sum(model_.size(), indices(a))});
+    for (int i = 0; i < model_.size(); ++i)
+      all.push_back({.name = model_.variables[static_cast<std::size_t>(i)], .form = QuadraticForm::coordinate(model_.size(), i)});
+    return all;
+  }
+  Network::Namer namer() const override {
+    return [](const Branch&) { return "B"; };
+  }
+
+  // `initial` at the parameter's own value if that lies in the range, at the lower end and the upper; then by deflation whatever else Newton
+  // reaches there from `initial`, from the solutions known and from points around them.
+  std::vector<Start> starts(const Problem& f, const std::string& lens, double lower, double upper) const override {
+    const int n = model_.size();
+    std::vector<double> at;
+    if (value(lens) >= lower && value(lens) <= upper) at.push_back(value(lens));
+    at.insert(at.end(), {lower, upper});
+    std::vector<Start> all;
+    Vector guess(n + 1);
+    for (int i = 0; i < n; ++i) guess[i] = model_.initial[static_cast<std::size_t>(i)];
+    for (const double p : at) {
+      guess[n] = p;
+      NewtonResult first = newton(f, guess);
+      if (!first.ok()) first = line_search_solve(f, guess);
+      std::vector<Vector> known, from = {guess};
+      if (first.ok()) known.push_back(first.x);
+      for (const double part : {0.3, -0.3, 1.0, -1.0})
+        for (int i = 0; i < n; ++i) {
+          Vector u = first.ok() ? first.x : guess;
+          u[i] += part * std::max(1.0, std::abs(u[i]));
+          from.push_back(u);
+        }
+      for (const auto& u : deflated_solutions(f, known, from)) all.push_back({u, fmt::format("{} = {:.6g}", lens, p)});
+    }
+    return all;
+  }
+  void write(ResultFile&) const override {}
+
+ private:
+  Indices indices(const Amplitude& a) const {
+    Indices of;
+    for (const auto& name : a.variables)
+      of.push_back(static_cast<int>(std::find(model_.variables.begin(), model_.variables.end(), name) - model_.variables.begin()));
+    return of;
+  }
+
+  Configuration c_;
+  EquilibriumModel model_;
+};
+
+}  // namespace
+
+void add_equilibrium_source_keys(Schema& s) {
+  add_stay_keys(s);
+  s.add({.name = "response.order",
+         .description = "superharmonic order n",
+         .default_value = std::int64_t{2},
+         .lower = 2,
+         .upper = 50,
+         .closed_lower = true,
+         .closed_upper = true});
+  s.add_free(equilibrium_model_section());
+  s.add_alternative({.sections = {"cable", "model", "damping", "support_motion", "response"}, .free_sections = {"equilibrium_model"}});
+}
+
+std::unique_ptr<EquilibriumSource> equilibrium_source(const Configuration& c) {
+  if (c.has("equilibrium_model")) return std::make_unique<ExpressionSource>(c);
+  return std::make_unique<StaySource>(c);
+}
+
+std::vector<Observable> peaks_of(const Configuration& c, const EquilibriumSource& source) {
+  const auto known = source.observables();
+  std::vector<std::string> names;
+  for (const auto& o : known) names.push_back(o.name);
+  std::vector<Observable> wanted;
+  for (const auto& name : c.texts("continuation.peaks")) {
+    const auto it = std::find(names.begin(), names.end(), name);
+    if (it == names.end()) throw c.error("continuation.peaks", fmt::format("each value must be one of {}", fmt::join(names, ", ")));
+    wanted.push_back(known[static_cast<std::size_t>(it - names.begin())]);
+  }
+  return wanted;
+}
+
+void try_seed(Network& net, const Vector& u, const std::string& origin, RunContext& context) {
+  try {
+    (void)net.add_seed(u, origin);
+  } catch (const std::invalid_argument& e) {
+    context.warn(fmt::format("{}: {}", origin, e.what()));
+  }
+}
+
+}  // namespace whirl::studies

@@ -1,0 +1,54 @@
+#pragma once
+/// Where the equilibrium problem of a study comes from: the averaged superharmonic slow flow of a [cable], or an [equilibrium_model].
+/// The kinds `continuation` and `two-parameter` ask it for problems, columns, names and starts and know nothing else of the model.
+///
+///     const auto source = equilibrium_source(configuration);
+///     const auto f = source->problem({"omega"});
+///     for (const Start& s : source->starts(*f, lower, upper)) network.add_seed(s.u, s.origin);
+
+#include <memory>
+
+#include "continuation/network.hpp"
+#include "studies/branch_output.hpp"
+#include "studies/configuration.hpp"
+#include "studies/result_file.hpp"
+#include "studies/run_context.hpp"
+
+namespace whirl::studies {
+
+struct Start {
+  Vector u;  ///< (x, p), near a solution
+  std::string origin;
+};
+
+class EquilibriumSource {
+ public:
+  virtual ~EquilibriumSource() = default;
+
+  virtual std::unique_ptr<Problem> problem(const std::vector<std::string>& lenses) const = 0;
+  virtual double value(const std::string& lens) const = 0;
+  virtual std::string unit(const std::string& lens) const = 0;
+  /// InputError at `key` if the lens is unknown, at `range_key` if the model does not take it there.
+  virtual void check_lens(const std::string& key, const std::string& lens, const std::string& range_key, double lower, double upper) const = 0;
+  virtual std::vector<std::string> warnings() const = 0;
+
+  /// Quantities of a point (x, parameters) of a problem of this source.
+  virtual std::vector<PointColumn> columns(const Problem& f) const = 0;
+  /// Those of `columns` whose extrema can be found, each with x'Qx + l'x.
+  virtual std::vector<continuation::Observable> observables() const = 0;
+  virtual continuation::Network::Namer namer() const = 0;
+  /// Points near solutions, in the order in which they are to be tried; f has one free parameter.
+  virtual std::vector<Start> starts(const Problem& f, const std::string& lens, double lower, double upper) const = 0;
+  virtual void write(ResultFile& file) const = 0;
+};
+
+/// [cable] and what belongs to it, response.order, or [equilibrium_model].
+void add_equilibrium_source_keys(Schema& schema);
+std::unique_ptr<EquilibriumSource> equilibrium_source(const Configuration& c);
+
+/// The observables that continuation.peaks names.
+std::vector<continuation::Observable> peaks_of(const Configuration& c, const EquilibriumSource& source);
+/// A start that leads nowhere is told, not fatal.
+void try_seed(continuation::Network& net, const Vector& u, const std::string& origin, RunContext& context);
+
+}  // namespace whirl::studies

@@ -1,0 +1,179 @@
+#include "studies/orbit_branches.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "continuation/period_doubling.hpp"
+#include "core/kinsol.hpp"
+#include "core/parallel.hpp"
+
+namespace whirl::studies {
+
+using namespace continuation;
+using namespace models;
+
+namespace {
+
+constexpr int first_harmonics = 10;     // per excitation period of the motion
+constexpr int truncation_samples = 16;  // points of a branch at which the truncation is measured, beside the special points
+
+bool has(const HarmonicBalance& hb, const std::vector<int>& active, const std::string& subtype) {
+  return std::any_of(active.begin(), active.end(), [&](int r) { return hb.reflections()[static_cast<std::size_t>(r)].subtype == subtype; });
+}
+
+bool keeps(const HarmonicBalance& hb, In u, const std::string& subtype) { return has(hb, active_reflections(hb, u.head(hb.size()), 1e-9), subtype); }
+
+}  // namespace
+
+OrbitBranches::OrbitBranches(ForcedSystem source, OrbitBranchOptions options, RunContext& context)
+    : source_(std::move(source)),
+      options_(std::move(options)),
+      context_(context),
+      harmonics_(options_.harmonics > 0 ? options_.harmonics : first_harmonics * options_.nu) {}
+
+const HarmonicBalance& OrbitBranches::balance(int level) const { return dynamic_cast<const HarmonicBalance&>(net_->problem(level)); }
+
+const HarmonicBalance& OrbitBranches::balance_of(In u) const {
+  for (int level = 0; level < levels(); ++level)
+    if (balance(level).size() + balance(level).parameters() == u.size()) return balance(level);
+  throw std::invalid_argument("no balance has unknowns of this size");
+}
+
+std::vector<Branch> OrbitBranches::all() const {
+  std::vector<Branch> branches;
+  for (int level = 0; level < levels(); ++level) branches.insert(branches.end(), network(level).branches().begin(), network(level).branches().end());
+  return branches;
+}
+
+double OrbitBranches::truncation(const Branch& b, int level) const {
+  double worst = 0.0;
+  const int every = std::max(1, b.points() / truncation_samples);
+  for (int i = 0; i < b.points(); i += every) worst = std::max(worst, balance(level).truncation(b.u(i)).error);
+  for (const auto& s : b.special) worst = std::max(worst, balance(level).truncation(s.u).error);
+  return worst;
+}
+
+// Measures the truncation of a finished branch; too large: this pass ends, the next has the harmonics that the worst motion needs.
+void OrbitBranches::judge(const Branch& b, int level) {
+  if (needed_ > 0 || b.points() == 0) return;
+  const HarmonicBalance& hb = balance(level);
+  double worst = 0.0;
+  Vector at;
+  const int every = std::max(1, b.points() / truncation_samples);
+  const auto look = [&](In u) {
+    const double error = hb.truncation(u).error;
+    if (error <= worst) return;
+    worst = error;
+    at = u;
+  };
+  for (int i = 0; i < b.points(); i += every) look(b.u(i));
+  for (const auto& s : b.special) look(s.u);
+  const bool enough = worst <= options_.truncation_tolerance || options_.harmonics > 0 || harmonics_ >= options_.max_harmonics;
+  if (enough) {
+    if (on_branch_) on_branch_(b, level);
+    return;
+  }
+  const OrbitOptions o{.tolerance = 0.3 * options_.truncation_tolerance, .max_harmonics = options_.max_harmonics << level};
+  const Orbit orbit = solve_orbit(hb, at, o);
+  needed_ = std::clamp((orbit.problem->harmonics() >> level) + 1, harmonics_ + options_.nu, options_.max_harmonics);
+}
+
+void OrbitBranches::seed_linear() {
+  const auto& walk = options_.network.walk;
+  for (int i = 0; i < options_.seed_grid && !net_->stopped(); ++i) {
+    const double p = walk.lower + (walk.upper - walk.lower) * (options_.seed_grid == 1 ? 0.5 : static_cast<double>(i) / (options_.seed_grid - 1));
+    const Vector guess = balance_->linear_response(Vector::Constant(1, p));
+    NewtonResult at = newton(*balance_, guess);
+    if (!at.ok()) at = line_search_solve(*balance_, guess);
+    if (at.ok()) net_->add_seed(at.x, fmt::format("linear response at {:.6g}", p));
+    if (i == 0) net_->switch_branches();
+  }
+}
+
+// Settled motions are integrated once, in all passes the same.
+void OrbitBranches::seed_integrated() {
+  if (!has_settled_) {
+    std::vector<Settled> runs(options_.seeds.size() * options_.seed_values.size());
+    parallel_for(runs.size(), [&](std::size_t i) {
+      if (interrupted) return;
+      runs[i].p = options_.seed_values[i / options_.seeds.size()];
+      const ModalSystem<double> system = source_.at(Vector::Constant(1, runs[i].p));
+      Vector y = Vector::Zero(2 * system.size());
+      y.head(system.size()) = options_.seeds[i % options_.seeds.size()];
+      auto settle_options = options_.settle;
+      settle_options.interrupted = &interrupted;
+      runs[i].motion = settle(system, y, settle_options);
+      context_.progress.show(fmt::format("integrating for starts, {} of {}", i + 1, runs.size()));
+    });
+    settled_ = std::move(runs);
+    has_settled_ = true;
+  }
+  for (const auto& s : settled_) {
+    if (s.motion.kind != MotionKind::periodic) continue;
+    int level = 0;
+    while (level < levels() && period(level) % s.motion.multiple != 0) ++level;
+    if (level == levels()) {
+      const std::string text =
+          fmt::format("a motion over {} excitation periods was met at {:.6g}: periodic.nu = {} or more period_doublings follow it", s.motion.multiple,
+                      s.p, s.motion.multiple);
+      if (std::find(context_.warnings.begin(), context_.warnings.end(), text) == context_.warnings.end()) context_.warn(text);
+      continue;
+    }
+    const HarmonicBalance& hb = balance(level);
+    const NewtonResult at = newton(hb, hb.from_motion(s.motion, Vector::Constant(1, s.p)));
+    // Newton may fall back on a motion of half the period: that one belongs to the level below.
+    if (at.ok() && (level == 0 || !keeps(hb, at.x, period_doubling_subtype)))
+      net_->add_seed(at.x, fmt::format("integrated motion at {:.6g}", s.p), level);
+  }
+}
+
+bool OrbitBranches::pass() {
+  needed_ = 0;
+  net_.reset();
+  HarmonicBalanceOptions o{.harmonics = harmonics_, .nu = options_.nu, .reflections = source_.reflections, .floquet = {}};
+  balance_ = std::make_unique<HarmonicBalance>(source_.system, o);
+  net_ = std::make_unique<OrbitNetwork>(*balance_, options_.network, options_.period_doublings);
+  const bool whirls = std::any_of(source_.reflections.begin(), source_.reflections.end(), [](const auto& r) { return r.subtype == "WH"; });
+  net_->set_namer([this, whirls](const Branch& b, int level) {
+    const std::string doubled = level == 0 ? "" : level == 1 ? "D" : fmt::format("P{}", period(level));
+    return doubled + (!whirls ? "B" : has(balance(level), b.active_reflections, "WH") ? "IP" : "W");
+  });
+  net_->set_observer([this](const Branch& b, int i) {
+    if (i % 20 == 0)
+      context_.progress.show(fmt::format("{} harmonics, branch at {:.6g}, {} points", harmonics_, i < b.points() ? b.parameter(i) : 0.0, i));
+    return !interrupted && needed_ == 0;
+  });
+  net_->on_branch([this](const Branch& b, int level) { judge(b, level); });
+  seed_linear();
+  if (starts_)
+    for (const Vector& start : starts_(*balance_)) {
+      if (net_->stopped()) break;
+      const NewtonResult at = newton(*balance_, start);
+      if (at.ok()) net_->add_seed(at.x, fmt::format("averaged motion at {:.6g}", start[start.size() - 1]));
+    }
+  if (!options_.seeds.empty() && !net_->stopped()) seed_integrated();
+  net_->switch_branches();
+  return needed_ == 0 || interrupted;
+}
+
+void OrbitBranches::find() {
+  while (!pass()) harmonics_ = needed_;
+  context_.progress.clear();
+}
+
+std::vector<OrbitBranches::Motion> OrbitBranches::motions_at(double p) const {
+  std::vector<Motion> found;
+  for (int level = 0; level < levels(); ++level) {
+    const HarmonicBalance& hb = balance(level);
+    for (const auto& [branch, u] : network(level).solutions_at(p)) {
+      Eigen::VectorXcd mu(hb.multiplier_count());
+      Eigen::VectorXi group(hb.multiplier_count());
+      const bool known = static_cast<const OrbitProblem&>(hb).multipliers(u, mu, group);
+      found.push_back({network(level).branches()[static_cast<std::size_t>(branch)].name, level, u, known && mu.cwiseAbs().maxCoeff() <= 1.0});
+    }
+  }
+  return found;
+}
+
+}  // namespace whirl::studies

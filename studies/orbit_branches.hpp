@@ -1,0 +1,83 @@
+#pragma once
+/// Branches of exact periodic motion of a forced modal system: harmonic balance with as many harmonics as the truncation asks for, walked from the
+/// linear response, from averaged and from integrated motions, through branch points and period doublings.
+///
+///     OrbitBranches orbits(system, options, context);
+///     orbits.on_branch([&](const Branch& b, int level) { ... });
+///     orbits.find();
+///     orbits.network(level).branches();          // motions over nu 2^level excitation periods
+///
+/// A branch whose truncation error comes out above the tolerance is not handed on: everything starts again with the harmonics that its worst motion
+/// needs. Throws std::invalid_argument for options out of range.
+
+#include "continuation/orbit_network.hpp"
+#include "studies/forced_system.hpp"
+#include "studies/run_context.hpp"
+
+namespace whirl::studies {
+
+struct OrbitBranchOptions {
+  continuation::NetworkOptions network;
+  int nu = 1;                          ///< base period in excitation periods
+  int harmonics = 0;                   ///< of omega/nu; 0: as many as the tolerance needs
+  double truncation_tolerance = 1e-9;  ///< on the motion, relative; see models::Truncation
+  int max_harmonics = 120;
+  int period_doublings = 1;            ///< how often a branch of doubled period is followed
+  int seed_grid = 9;                   ///< parameter values at which the linear response is tried
+  std::vector<Vector> seeds;           ///< further starts: values of q at rest, integrated at every `seed_values`
+  std::vector<double> seed_values;     ///< parameter values
+  models::SettleOptions settle;
+};
+
+class OrbitBranches {
+ public:
+  using OnBranch = std::function<void(const continuation::Branch&, int level)>;
+
+  OrbitBranches(ForcedSystem source, OrbitBranchOptions options, RunContext& context);
+
+  void on_branch(OnBranch f) { on_branch_ = std::move(f); }
+  /// Start values in the unknowns of `balance(0)`, asked for in every pass.
+  void add_starts(std::function<std::vector<Vector>(const models::HarmonicBalance&)> starts) { starts_ = std::move(starts); }
+  void find();
+
+  const ForcedSystem& source() const { return source_; }
+  const models::HarmonicBalance& balance(int level) const;
+  const models::HarmonicBalance& balance_of(In u) const;  ///< the one whose unknown u is, by its size
+  const continuation::Network& network(int level) const { return net_->network(level); }
+  int levels() const { return options_.period_doublings + 1; }
+  int period(int level) const { return options_.nu << level; }  ///< in excitation periods
+  std::vector<continuation::Branch> all() const;
+  double truncation(const continuation::Branch& b, int level) const;  ///< largest error over its special points and every few points
+  /// Periodic motions at parameter value p: branch, level, unknowns, stable.
+  struct Motion {
+    std::string branch;
+    int level;
+    Vector u;
+    bool stable;
+  };
+  std::vector<Motion> motions_at(double p) const;
+
+ private:
+  bool pass();  // false: more harmonics are needed
+  void judge(const continuation::Branch& b, int level);
+  void seed_linear();
+  void seed_integrated();
+  struct Settled {
+    double p;
+    models::SteadyMotion motion;
+  };
+
+  ForcedSystem source_;
+  OrbitBranchOptions options_;
+  RunContext& context_;
+  int harmonics_;
+  int needed_ = 0;  // harmonics that a branch of this pass asks for; 0: none
+  std::vector<Settled> settled_;
+  bool has_settled_ = false;
+  std::unique_ptr<models::HarmonicBalance> balance_;
+  std::unique_ptr<continuation::OrbitNetwork> net_;
+  OnBranch on_branch_;
+  std::function<std::vector<Vector>(const models::HarmonicBalance&)> starts_;
+};
+
+}  // namespace whirl::studies
