@@ -18,10 +18,10 @@ def convergence(result):
     names = [n for n in STYLE if np.any(table.column("longitudinal") == n)]
     harmonic = int(a["peak.harmonic"])
     panels = (("threshold", "threshold [m]", "least support amplitude that starts whirling"),
-              ("threshold_omega", r"$\omega$ [rad/s]", "where"),
+              ("threshold_omega", r"$\omega$ [rad/s]", "its frequency"),
               ("peak", "amplitude [m]", rf"planar peak at {harmonic}$\omega$, $U$ = {a['peak.amplitude']:g} m, $x/L$ = {a['peak.station']:g}"),
-              ("peak_omega", r"$\omega$ [rad/s]", "where"))
-    words = study_words(result, "modes of each plane, lowest first", varied="support_motion.amplitude")
+              ("peak_omega", r"$\omega$ [rad/s]", "its frequency"))
+    words = study_words(result, "Lowest modes of each plane", varied="support_motion.amplitude")
     page = Page(6.6, 4.6, "Whirling threshold and planar peak against the number of modes", [words + ".", sentence(table, names)],
                 [line_key(STYLE[n][2], color=STYLE[n][0], marker=STYLE[n][1], markersize=4.5, linewidth=1.4) for n in names])
     for k, (axes, (column, unit, title)) in enumerate(zip(page.subplots(2, 2).flat, panels)):

@@ -61,7 +61,7 @@ def cross_over(result):
 def shapes(result):
     """Transverse and longitudinal shapes of the lowest modes in plane."""
     modes, group = result.group("modes"), result.group("shapes")
-    chosen = [str(m) for m, f in zip(modes.column("mode"), modes.column("family")) if f != "out of plane"][:4]
+    chosen = [str(m) for m, f in zip(modes.column("mode"), modes.column("family")) if f != "out of plane" and group.group(str(m))][:4]
     if not chosen:
         return None
     page = Page(6.6, 4.4, "Lowest in-plane mode shapes", [cable_words(result) + " Longitudinal part on its own scale."],
