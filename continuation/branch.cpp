@@ -40,6 +40,8 @@ const char* to_string(StopReason reason) {
       return "symmetric_branch";
     case StopReason::known_branch_point:
       return "branch_point";
+    case StopReason::strong_resonance:
+      return "strong_resonance";
     case StopReason::bogdanov_takens:
       return "bogdanov_takens";
     case StopReason::max_points:

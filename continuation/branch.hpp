@@ -30,6 +30,7 @@ enum class StopReason {
   closed_loop,         ///< came back to its first point
   symmetric_branch,    ///< reached a branch point on a symmetric branch; the rest is the mirror image
   known_branch_point,  ///< started at a branch point
+  strong_resonance,    ///< a curve of torus points ends: its multipliers meet at 1 or -1
   bogdanov_takens,     ///< a curve of Hopf points ends: its frequency is zero
   max_points,
   min_step,  ///< the corrector failed at the smallest step

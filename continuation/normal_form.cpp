@@ -58,33 +58,10 @@ Vector solve_off_null(const Matrix& a, const Vector& v, const Vector& w, const V
   return m.partialPivLu().solve(r).head(n);
 }
 
-// a' = w'(D2r[v, t]) s a + c a^3 loses its meaning as a flow where r is a harmonic balance; the branch s = -(c / w'D2r[v, t]) a^2 keeps its own.
-void set_orbit_pitchfork(const Problem& f, SpecialPoint& point) {
-  const int sense = point.unstable_after - point.unstable_before, n = f.size();
-  if (sense == 0 || point.tangent.size() == 0) return;
-  Matrix j(n, n + f.parameters()), h(n, n + f.parameters());
-  f.jacobian(point.u, j);
-  const Matrix a = j.leftCols(n);
-  Vector v, w, full = Vector::Zero(n + f.parameters());
-  null_vectors(a, v, w);
-  Forms forms(f, point.u);
-  const double cubic = w.dot(forms.C(v, v, v)) / 6.0 + 0.5 * w.dot(forms.B(v, solve_off_null(a, v, w, Vector(-forms.B(v, v)))));
-  full.head(n) = v;
-  f.second(point.u, full, h);
-  const double crossing = w.dot(h * point.tangent);
-  point.coefficient = cubic / crossing * (sense > 0 ? 1.0 : -1.0);
-  point.has_coefficient = std::isfinite(point.coefficient);
-}
-
-void set_orbit_coefficient(const OrbitProblem& orbit, SpecialPoint& point) {
-  if (point.type == EventType::branch_point && point.block > 0) set_orbit_pitchfork(orbit, point);
-  if (point.type != EventType::period_doubling) return;
+void set_doubling_coefficient(const OrbitProblem& orbit, SpecialPoint& point) {
   auto doubled = period_doubling_near(orbit, point.u, point.block);
   if (!doubled) return;
-  doubled->tangent = orbit.in_doubled(point.tangent);
-  doubled->unstable_before = point.unstable_before;
-  doubled->unstable_after = point.unstable_after;
-  set_orbit_pitchfork(orbit.doubled(), *doubled);
+  set_normal_form(orbit.doubled(), *doubled);
   point.coefficient = doubled->coefficient;
   point.has_coefficient = doubled->has_coefficient;
 }
@@ -98,7 +75,21 @@ std::string criticality(const SpecialPoint& point) {
   return point.coefficient < 0.0 ? "supercritical" : "subcritical";
 }
 
+double mass(const Problem& f, In u, const Vector& v, const Vector& w) {
+  const auto* orbit = dynamic_cast<const OrbitProblem*>(&f);
+  if (!orbit) return w.dot(v);
+  Matrix c(f.size(), f.size());
+  orbit->velocity(u, c);
+  return -w.dot(c * v);
+}
+
 void set_normal_form(const Problem& f, SpecialPoint& point, const Vector& sense) {
+  const auto* orbit = dynamic_cast<const OrbitProblem*>(&f);
+  if (orbit && point.type == EventType::period_doubling) return set_doubling_coefficient(*orbit, point);
+  set_normal_form(f, point, sense, [&](const Vector& v, const Vector& w) { return mass(f, point.u, v, w); });
+}
+
+void set_normal_form(const Problem& f, SpecialPoint& point, const Vector& sense, const Mass& mass_of) {
   const int n = f.size();
   if (f.derivatives() < 3) return;
   Matrix j(n, n + f.parameters());
@@ -126,21 +117,17 @@ void set_normal_form(const Problem& f, SpecialPoint& point, const Vector& sense)
     point.null_vector_im = q.imag();
     return;
   }
-  if (const auto* orbit = dynamic_cast<const OrbitProblem*>(&f)) {
-    set_orbit_coefficient(*orbit, point);
-    return;
-  }
   if (point.type != EventType::fold && point.type != EventType::branch_point) return;
   Vector v, w;
   null_vectors(a, v, w);
-  const double overlap = w.dot(v);
+  const double overlap = mass_of(v, w);
   if (std::abs(overlap) < 1e-10) return;  // a double zero: no coefficient
   const auto along = [&](In direction) { return direction.size() >= n && v.dot(direction.head(n)) < 0.0; };
   if (along(sense.size() > 0 ? sense : point.tangent)) {
     v = -v;
     w = -w;
   }
-  w /= w.dot(v);
+  w /= mass_of(v, w);
   if (point.type == EventType::fold) point.null_vector = v;
   const Vector bvv = forms.B(v, v);
   const double quadratic = 0.5 * w.dot(bvv);

@@ -5,10 +5,12 @@
 ///     pitchfork   a' = beta a + c a^3,    c = (1/6) w' C(v, v, v) + (1/2) w' B(v, h),   A h = -B(v, v)        c < 0: supercritical
 ///     Hopf        l1 = Re[ p* C(q, q, q~) - 2 p* B(q, A^-1 B(q, q~)) + p* B(q~, (2 i w - A)^-1 B(q, q)) ] / (2 w)      < 0: supercritical
 ///
-/// Of a periodic motion (OrbitProblem) a pitchfork and a period doubling get the bend of the branch that leaves, s = -(coefficient) a^2 where s
-/// counts towards the side on which the motion it leaves is less stable: < 0 supercritical too. a is the length of the disturbance's harmonics.
+/// Of a periodic motion r is no flow: disturbances e^{lambda t} v obey (A + lambda C + lambda^2) v = 0 (orbit_problem.hpp), so that w'v = 1 becomes
+/// -w'C v = 1 and the coefficients are again those of a' on the centre manifold. A period doubling gets the pitchfork's in the doubled problem.
 ///
 /// A = r_x, B and C its second and third derivatives in x. v and q have unit length, so numbers depend on the units of x.
+
+#include <functional>
 
 #include "continuation/branch.hpp"
 
@@ -19,6 +21,12 @@ namespace whirl::continuation {
 /// transcritical (1/2) w' B(v, v).
 /// The sign of a quadratic coefficient goes with the sense of v: along `sense` if it is given, else along the branch's tangent at the point.
 void set_normal_form(const Problem& f, SpecialPoint& point, const Vector& sense = {});
+
+/// What w'v is to a flow: of periodic motions -w'C v, u with all parameters of f.
+double mass(const Problem& f, In u, const Vector& v, const Vector& w);
+using Mass = std::function<double(const Vector& v, const Vector& w)>;
+/// The same with the mass given, where f is not itself the problem that knows it.
+void set_normal_form(const Problem& f, SpecialPoint& point, const Vector& sense, const Mass& mass);
 
 /// "supercritical" or "subcritical" for a pitchfork or a Hopf point with a coefficient, else "".
 std::string criticality(const SpecialPoint& point);

@@ -100,11 +100,13 @@ class Follower {
  private:
   SpecialPoint at(In y) const;  // the special point behind the system's unknowns, with its normal form
   std::vector<Test> tests() const;
+  Test double_root() const;
   Vector base(In y) const { return system_->base_point(y); }
   double crossing_pair(In y, double kappa = 0.0) const;  // real part of the pair nearest the axis, away from the critical one
   double crossing_real(In y) const;
   bool mirrored(const Vector& a, const Vector& b) const;  // did the part that breaks a symmetry pass zero between a and b?
-  bool symmetric(const Vector& u) const;                  // is that part zero next to the rest?
+  bool past_strong_resonance(In y) const;
+  bool symmetric(const Vector& u) const;  // is that part zero next to the rest?
   void locate(const Branch& b, int i, const Test& test, double from, double to, DefiningCurve& curve);
 
   const Problem& f_;
@@ -134,7 +136,7 @@ SpecialPoint Follower::at(In y) const {
     s.frequency = torus->kappa(y);
     return s;
   }
-  set_normal_form(held_, s, sense_);
+  set_normal_form(held_, s, sense_, [&](const Vector& v, const Vector& w) { return mass(f_, u, v, w); });
   if (!s.has_coefficient) s.coefficient = std::nan("");
   if (point_.type == EventType::fold && s.has_coefficient) sense_ = s.null_vector;
   return s;
@@ -162,6 +164,12 @@ double Follower::crossing_real(In y) const {
   return best;
 }
 
+// A curve of torus points ends where its multipliers meet at 1 or -1; beyond, the same curve runs back with the frequency mirrored.
+bool Follower::past_strong_resonance(In y) const {
+  const auto* torus = dynamic_cast<const TorusSystem*>(system_.get());
+  return torus && (torus->kappa(y) < 0.0 || torus->kappa(y) > 0.5 * dynamic_cast<const OrbitProblem&>(f_).base_frequency(base(y)));
+}
+
 bool Follower::mirrored(const Vector& a, const Vector& b) const {
   for (int r = 0; r < static_cast<int>(f_.reflections().size()); ++r) {
     if (std::find(blocks_.active.begin(), blocks_.active.end(), r) != blocks_.active.end()) continue;
@@ -182,6 +190,13 @@ bool Follower::symmetric(const Vector& u) const {
   return false;
 }
 
+// A second eigenvalue joins the first at zero; of a periodic motion a second multiplier at 1, or at -1 of a doubling.
+Test Follower::double_root() const {
+  const char* name = f_.is_flow() ? "BT" : !dynamic_cast<const OrbitProblem*>(&f_) ? "BT" : point_.subtype == period_doubling_subtype ? "R2" : "R1";
+  const auto* singular = dynamic_cast<const SingularSystem*>(system_.get());
+  return {name, [this, singular](In y) { return mass(f_, base(y), singular->null_vector(y), singular->left_null_vector(y)); }};
+}
+
 std::vector<Test> Follower::tests() const {
   const auto coefficient = [this](In y) { return at(y).coefficient; };
   std::vector<Test> all;
@@ -196,20 +211,18 @@ std::vector<Test> Follower::tests() const {
                      f_.second(u, full, h);
                      return w.dot(h.leftCols(f_.size()) * v);
                    }});
-    all.push_back({"BT", [singular](In y) {
-                     const Vector v = singular->null_vector(y), w = singular->left_null_vector(y);
-                     return w.dot(v);
-                   }});
+    all.push_back(double_root());
     if (f_.is_flow()) all.push_back({"ZH", [this](In y) { return crossing_pair(y); }});
   }
   if (point_.type == EventType::branch_point) {
     if (point_.block > 0 || point_.subtype == "PF") all.push_back({"DP", coefficient});
-    if (singular)
-      all.push_back({"BT", [singular](In y) {
-                       const Vector v = singular->null_vector(y), w = singular->left_null_vector(y);
-                       return w.dot(v);
-                     }});
+    if (singular) all.push_back(double_root());
     if (f_.is_flow()) all.push_back({"ZH", [this](In y) { return crossing_pair(y); }});
+  }
+  if (const auto* torus = dynamic_cast<const TorusSystem*>(system_.get())) {
+    const auto& orbit = dynamic_cast<const OrbitProblem&>(f_);
+    for (const int q : {3, 4})
+      all.push_back({fmt::format("R{}", q), [this, torus, &orbit, q](In y) { return torus->kappa(y) / orbit.base_frequency(base(y)) - 1.0 / q; }});
   }
   if (const auto* hopf = dynamic_cast<const HopfSystem*>(system_.get())) {
     all.push_back({"BT", [hopf](In y) { return hopf->kappa(y); }});
@@ -270,6 +283,7 @@ DefiningCurve Follower::run(double p2, const Observer& observer) {
     if (++fresh % 10 == 0) system_->update_borders(b.u(i));  // keeps the borders near the null vectors as they turn
     const auto* hopf = dynamic_cast<const HopfSystem*>(system_.get());
     if (i > 0 && mirrored(base(b.u(i - 1)), base(b.u(i)))) why = StopReason::symmetric_branch;
+    else if (past_strong_resonance(b.u(i))) why = StopReason::strong_resonance;
     else if (hopf && hopf->kappa(b.u(i)) < 0.0) why = StopReason::bogdanov_takens;  // beyond: neutral saddles
     else if (observer && !observer(b, i)) why = StopReason::observer;
     return why == StopReason::none;

@@ -9,6 +9,9 @@
 ///     on a fold curve     CP  cusp (the quadratic coefficient vanishes), BT  Bogdanov-Takens (w'v = 0), ZH  zero-Hopf (a pair crosses)
 ///     on a Hopf curve     GH  generalised Hopf (l1 = 0), BT (frequency -> 0), ZH (a real eigenvalue crosses)
 ///     on a branch-point curve   DP  degenerate pitchfork (the cubic coefficient vanishes: super- to subcritical), and LP of the curve itself:
+///     of periodic motions   R1 a second multiplier at 1 (on LP and BP curves), R2 at -1 (on PD curves), R3, R4 multipliers at the third and fourth
+///     roots
+///                         of 1 (on TR curves)
 ///     the least value of a parameter on any curve is its threshold, type "MIN"/"MAX" in the second parameter.
 
 #include "continuation/walker.hpp"

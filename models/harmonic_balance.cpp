@@ -57,10 +57,10 @@ class StayMaker {
   }
 
   template <class S>
-  ModalSystem<S> operator()(std::span<const S> p) const {
+  void operator()(std::span<const S> p, ModalSystem<S>& out) const {
     StayParameters<S> record = promote<S>(stay_);
     for (std::size_t i = 0; i < lenses_.size(); ++i) lenses_[i].set(record, p[i]);
-    return nielsen_kirkegaard(record, cable_moves_ ? stay_model(record.cable, coefficients_) : constant_model<S>(), terms_);
+    nielsen_kirkegaard(record, cable_moves_ ? stay_model(record.cable, coefficients_) : constant_model<S>(), terms_, out);
   }
 
  private:
@@ -584,7 +584,7 @@ double HarmonicBalance::tail(In u) const {
 
 // The full equations leave residual harmonics R_k, k > H, all of them finite in number. To first order they move the motion by
 //     d_k = -R_k / (K - k^2 Omega^2 + i c k Omega)  above H,      d_low = -J^{-1} <g d_high>  below.
-Truncation HarmonicBalance::truncation(In u) const {
+Truncation HarmonicBalance::truncation(In u, const Vector& tangent) const {
   const ModalSystem<double> system = system_at(u);
   const int H = harmonics();
   const int top = std::max(largest_degree(system) * H + system.max_harmonic * nu(), H + 1);
@@ -633,11 +633,31 @@ Truncation HarmonicBalance::truncation(In u) const {
   }
   Matrix j(size(), size() + parameters());
   jacobian(u, j);
-  low = j.leftCols(size()).partialPivLu().solve(low).eval();
+  double shift = 0.0;  // of the parameter, relative
+  if (tangent.size() == 0) {
+    low = j.leftCols(size()).partialPivLu().solve(low).eval();
+  } else {
+    Matrix bordered(size() + 1, size() + 1);
+    bordered << j.leftCols(size() + 1), tangent.head(size() + 1).transpose();
+    Vector rhs(size() + 1);
+    rhs << low, 0.0;
+    rhs = bordered.partialPivLu().solve(rhs).eval();
+    low = rhs.head(size());
+    shift = std::abs(rhs[size()]) / std::max(std::abs(u[size()]), 1e-300);
+  }
   const Eigen::MatrixXd change = observe(low).cwiseAbs();
   for (int i = 0; i < n_; ++i) moved[i] += change.row(i).sum();
   const double largest = observe(u).cwiseAbs().maxCoeff();
-  return {sum.maxCoeff(), largest > 0.0 ? moved.maxCoeff() / largest : moved.maxCoeff()};
+  return {sum.maxCoeff(), std::max(largest > 0.0 ? moved.maxCoeff() / largest : moved.maxCoeff(), shift)};
+}
+
+// Amplitudes fall geometrically in the end: their rate between the largest ones of the third and of the last quarter of the harmonics.
+int HarmonicBalance::harmonics_for(In u, double factor) const {
+  const Eigen::MatrixXd amplitude = observe(u).cwiseAbs();
+  const int H = harmonics(), quarter = std::max(1, H / 4);
+  const double late = amplitude.rightCols(quarter).maxCoeff(), early = amplitude.middleCols(H + 1 - 2 * quarter, quarter).maxCoeff();
+  const double rate = late > 0.0 && early > late ? std::log(early / late) / quarter : 0.05;
+  return H + std::max(nu(), static_cast<int>(std::ceil(std::log(std::max(1.0 / factor, 1.0)) / rate)));
 }
 
 const FloquetResult& HarmonicBalance::floquet(In u, const Floquet::Blocks& blocks) const {

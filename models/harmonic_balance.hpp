@@ -133,7 +133,11 @@ class HarmonicBalance : public OrbitProblem {
   Vector state_at(In u, double t) const;
   /// Largest amplitude of the last two harmonics (of each parity of k) over the largest of all.
   double tail(In u) const;
-  Truncation truncation(In u) const;
+  /// Along a curve of motions give its tangent at u (size n + parameters, one parameter): the error is then the distance of the curves, which stays
+  /// finite at folds, where the motion at a held parameter is not.
+  Truncation truncation(In u, const Vector& tangent = {}) const;
+  /// Harmonics that bring `truncation` down by `factor` if the amplitudes fall on as they do at u.
+  int harmonics_for(In u, double factor) const;
   const FloquetResult& floquet(In u, const Floquet::Blocks& blocks = {}) const;
 
   /// Start values (x, p): the response without the terms, and the harmonics of a settled periodic motion.

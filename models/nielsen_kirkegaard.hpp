@@ -46,18 +46,21 @@ S in_plane_load(const StayParameters<S>& p, const StayModel<S>& model) {
          (p.omega * p.omega * sin(theta) - model.shape.sag_ratio * 16.0 * stiffness_rate(p.cable) * cos(theta));
 }
 
+/// Into `s`, whose memory is used again.
 template <class S>
-ModalSystem<S> nielsen_kirkegaard(const StayParameters<S>& p, const StayModel<S>& model, Terms terms) {
+void nielsen_kirkegaard(const StayParameters<S>& p, const StayModel<S>& model, Terms terms, ModalSystem<S>& s) {
   using std::cos;
   using std::sin;
   const auto& k = model.coefficients;
   const S L = p.cable.chord_length, K = stiffness_rate(p.cable), KL2 = K / (L * L);
   const S theta = p.cable.inclination_deg * (pi / 180.0), E = p.support_amplitude / L, E1 = E * cos(theta), E2 = E * sin(theta);
   const S w1 = model.modes.omega1, w2 = model.modes.omega2;
-  ModalSystem<S> s;
   s.omega = p.omega;
-  s.damping = {p.damping_out_of_plane * w1 * 2.0, p.damping_in_plane * w2 * 2.0};
-  s.stiffness = {w1 * w1, w2 * w2};
+  s.damping.assign({p.damping_out_of_plane * w1 * 2.0, p.damping_in_plane * w2 * 2.0});
+  s.stiffness.assign({w1 * w1, w2 * w2});
+  s.terms.clear();
+  s.forces.clear();
+  s.max_harmonic = 0;
   s.add_force(1, in_plane_load(p, model), 1);
   s.add_term(0, K * E1 * k.c1, {0}, 1);
   s.add_term(1, K * E1 * k.c2, {1}, 1);
@@ -76,6 +79,12 @@ ModalSystem<S> nielsen_kirkegaard(const StayParameters<S>& p, const StayModel<S>
       s.add_force(1, -(K * model.shape.sag * k.a2 * ee2 * 8.0), harmonic);
     }
   }
+}
+
+template <class S>
+ModalSystem<S> nielsen_kirkegaard(const StayParameters<S>& p, const StayModel<S>& model, Terms terms) {
+  ModalSystem<S> s;
+  nielsen_kirkegaard(p, model, terms, s);
   return s;
 }
 

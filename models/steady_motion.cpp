@@ -60,6 +60,8 @@ const char* to_string(MotionKind kind) {
       return "unsettled";
     case MotionKind::failed:
       return "failed";
+    case MotionKind::diverging:
+      return "diverging";
   }
   return "?";
 }

@@ -16,7 +16,7 @@
 
 namespace whirl::models {
 
-enum class MotionKind { periodic, quasi_periodic, chaotic, unsettled, failed };
+enum class MotionKind { periodic, quasi_periodic, chaotic, unsettled, failed, diverging };
 const char* to_string(MotionKind kind);
 
 struct SettleOptions {

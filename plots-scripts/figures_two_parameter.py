@@ -21,12 +21,16 @@ CURVES = {
     "BP": (PURPLE, ("solid", "dotted"), "BP branch points"),
     "LP": (VERMILLION, ("dashed",), "LP folds"),
     "HB": (GREEN, ("band",), "HB Hopf points"),
+    "PD": (PURPLE, ("solid", "dotted"), "PD period doublings"),
+    "SB": (GREY, ("solid", "dotted"), "SB half-period symmetry breaking"),
+    "TR": (GREEN, ("dashed",), "TR torus points"),
 }
 # Shape, size and words of each point. Of several at one place the first in this order is drawn: at a cusp every parameter is
 # extreme, too.
 POINTS = {
     "DP": ("D", 5.0, "DP degenerate pitchfork"), "BT": ("s", 5.2, "BT Bogdanov–Takens"), "ZH": ("X", 6.5, "ZH zero-Hopf"),
-    "GH": ("h", 6.5, "GH generalised Hopf"), "CP": ("*", 8.5, "CP cusp"), "threshold": ("o", 5.5, "threshold of whirling"),
+    "R1": ("s", 5.2, "R1 resonance 1:1"), "R2": ("s", 5.2, "R2 resonance 1:2"), "R3": ("h", 6.0, "R3 resonance 1:3"),
+    "R4": ("p", 6.0, "R4 resonance 1:4"), "GH": ("h", 6.5, "GH generalised Hopf"), "CP": ("*", 8.5, "CP cusp"), "threshold": ("o", 5.5, "threshold of whirling"),
     "MIN": ("v", 3.6, "minimum"), "MAX": ("^", 3.6, "maximum"),
 }
 QUIET = ("MIN", "MAX")      # marked, not named
@@ -102,7 +106,7 @@ def kind_of(table):
 
 def points_of(result, x, y, scale):
     """Special points, a place once; the least of the whirling curves' minima is the threshold."""
-    table = result.group("special_points")
+    table = result.group("curve_points") or result.group("special_points")
     found = [Point(str(table.column("type")[i]), str(table.column("curve")[i]), np.array([table.column(x)[i], table.column(y)[i]]),
                    {str(table.column("curve")[i])}) for i in range(table.rows())]
     found = [p for p in found if p.kind in POINTS]
@@ -172,7 +176,7 @@ def chart(result, curves, points, parameters, units, scale):
 
 
 def title(curves, symbols):
-    nouns = {"WH": "whirling", "BP": "branch", "LP": "fold", "HB": "Hopf"}
+    nouns = {"WH": "whirling", "BP": "branch", "LP": "fold", "HB": "Hopf", "PD": "period-doubling", "SB": "symmetry-breaking", "TR": "torus"}
     words = [nouns[k] for k in CURVES if any(c.kind == k for c in curves)]
     joined = " and ".join(filter(None, (", ".join(words[:-1]), words[-1])))
     return f"{joined[0].upper()}{joined[1:]} points in the plane of {symbols[0]} and {symbols[1]}, two-parameter study"

@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace whirl::studies {
@@ -48,9 +49,11 @@ void BranchOutput::write_branch(ResultFile& file, const Branch& b) const {
   for (const auto& column : columns) add(column.name, column.unit, column.description, [&](int i) { return column.value(b.u(i)); });
   add("n_unstable", "-", "number of unstable directions; 0 is stable", [&](int i) { return b.n_unstable(i); });
   if (b.has_spectrum())
-    for (int k = 0; k < b.size(); ++k) {
-      add(fmt::format("eig{}_re", k + 1), "1/s", "eigenvalue of the Jacobian, real part", [&](int i) { return b.eigenvalues(i)[k].real(); });
-      add(fmt::format("eig{}_im", k + 1), "1/s", "eigenvalue of the Jacobian, imaginary part", [&](int i) { return b.eigenvalues(i)[k].imag(); });
+    for (int k = 0; k < b.spectrum_size(); ++k) {
+      const std::string name = fmt::format("{}{}", multipliers ? "mu" : "eig", k + 1), unit = multipliers ? "-" : "1/s",
+                        what = multipliers ? "Floquet multiplier over the motion's period" : "eigenvalue of the Jacobian";
+      add(name + "_re", unit, what + ", real part", [&](int i) { return b.eigenvalues(i)[k].real(); });
+      add(name + "_im", unit, what + ", imaginary part", [&](int i) { return b.eigenvalues(i)[k].imag(); });
     }
   add("arclength", "-", "along the branch, in the walker's metric", [&](int i) { return b.arclength(i); });
   add("residual", "-", "largest residual", [&](int i) { return b.residual(i); });
@@ -89,10 +92,11 @@ void BranchOutput::write_special_points(ResultFile& file, const std::vector<Bran
   };
   add(parameter, parameter_unit, "continuation parameter", [](const SpecialPoint& s) { return s.u[s.u.size() - 1]; });
   for (const auto& column : columns) add(column.name, column.unit, column.description, [&](const SpecialPoint& s) { return column.value(s.u); });
-  add("period", "-", "of the motion in excitation periods, 0 for equilibria", [&](const SpecialPoint&) { return period; });
+  add("period", "-", "of the motion in excitation periods, 0 for equilibria", [&](const SpecialPoint& s) { return period_at(s.u); });
   add("unstable_before", "-", "unstable directions before, along the branch", [](const SpecialPoint& s) { return s.unstable_before; });
   add("unstable_after", "-", "unstable directions after", [](const SpecialPoint& s) { return s.unstable_after; });
-  add("frequency", "rad/s", "Hopf: of the motion that is born, in the slow time", [](const SpecialPoint& s) { return s.frequency; });
+  add("frequency", "rad/s", "Hopf, torus: of the motion that is born, in the slow time or beside the excitation",
+      [](const SpecialPoint& s) { return s.frequency; });
   add("coefficient", "-", "normal-form coefficient; NaN if not computed",
       [](const SpecialPoint& s) { return s.has_coefficient ? s.coefficient : std::nan(""); });
   add("arclength", "-", "along the branch", [](const SpecialPoint& s) { return s.arclength; });
@@ -110,11 +114,11 @@ std::string BranchOutput::json(const std::vector<Branch>& branches) const {
       const auto& s = b.special[i];
       std::string o = fmt::format(R"({{"branch": {}, "label": {}, "type": "{}", "subtype": {}, "{}": {}, "period": {})", json_text(b.name),
                                   json_text(label(b, i)), to_string(s.type), json_text(s.subtype), parameter, json_number(s.u[s.u.size() - 1]),
-                                  json_number(period));
+                                  json_number(period_at(s.u)));
       o += fmt::format(R"(, "stable_before": {}, "stable_after": {}, "unstable_before": {}, "unstable_after": {})", s.stable_before(),
                        s.stable_after(), s.unstable_before, s.unstable_after);
       for (const auto& column : columns) o += fmt::format(R"(, "{}": {})", column.name, json_number(column.value(s.u)));
-      if (s.type == EventType::hopf) o += fmt::format(R"(, "frequency": {})", json_number(s.frequency));
+      if (s.type == EventType::hopf || s.type == EventType::torus) o += fmt::format(R"(, "frequency": {})", json_number(s.frequency));
       if (s.has_coefficient) o += fmt::format(R"(, "coefficient": {})", json_number(s.coefficient));
       if (const std::string how = criticality(s); !how.empty()) o += fmt::format(R"(, "criticality": "{}")", how);
       o += fmt::format(R"(, "residual": {}, "bracket": [{}, {}]}})", json_number(s.residual), json_number(s.bracket[0]), json_number(s.bracket[1]));
@@ -131,8 +135,9 @@ std::string BranchOutput::text(const std::vector<Branch>& branches) const {
   std::string out;
   // Amplitudes only: phases and derived numbers stand in the file.
   std::vector<const PointColumn*> shown;
+  const bool chosen = std::any_of(columns.begin(), columns.end(), [](const auto& c) { return c.shown; });
   for (const auto& c : columns)
-    if (((c.unit == "m" && c.name.starts_with("q")) || c.shown) && shown.size() < 5) shown.push_back(&c);
+    if ((c.shown || (!chosen && c.unit == "m" && c.name.starts_with("q"))) && shown.size() < 5) shown.push_back(&c);
   out += fmt::format("{:<7} {:<6} {:<10} {:>18}", "branch", "point", "subtype", fmt::format("{} [{}]", parameter, parameter_unit));
   for (const auto* c : shown) out += fmt::format(" {:>14}", fmt::format("{} [{}]", c->name, c->unit));
   out += fmt::format(" {:>9} {:>9}\n", "unstable", "residual");

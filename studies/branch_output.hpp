@@ -17,8 +17,10 @@ struct PointColumn {
 
 struct BranchOutput {
   std::string parameter, parameter_unit;
-  std::vector<PointColumn> columns;  ///< amplitudes, phases, derived numbers
-  double period = 0.0;               ///< in excitation periods; 0 for equilibria
+  std::vector<PointColumn> columns;            ///< amplitudes, phases, derived numbers
+  double period = 0.0;                         ///< in excitation periods; 0 for equilibria
+  std::function<double(In u)> period_of = {};  ///< in place of `period`, where branches differ
+  bool multipliers = false;                    ///< the spectrum of a branch is Floquet multipliers
 
   /// /branches/<name>: the columns, then n_unstable, eigenvalues, arclength, residual, step, newton_iterations.
   void write_branch(ResultFile& file, const continuation::Branch& branch) const;
@@ -28,6 +30,7 @@ struct BranchOutput {
   std::string json(const std::vector<continuation::Branch>& branches) const;
   /// The table printed at the end of a run.
   std::string text(const std::vector<continuation::Branch>& branches) const;
+  double period_at(In u) const { return period_of ? period_of(u) : period; }
 };
 
 /// "LP", "BP", ...: with its running number on the branch, "LP2".

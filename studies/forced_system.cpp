@@ -52,6 +52,36 @@ ForcedSystem forced_system_of(const Configuration& c, const std::vector<std::str
   return {cable_system(model, chosen), cable_reflections(model), coordinate_names(c), "m", units};
 }
 
+void check_forced_lens(const Configuration& c, const std::string& key, const std::string& lens, const std::string& range_key, double lower,
+                       double upper) {
+  if (c.has("modal_model")) {
+    check_modal_lens(c, modal_model_of(c), key, lens);
+    if (lens == "omega" && !(lower > 0.0)) throw c.error(range_key, "must lie above 0 rad/s");
+    return;
+  }
+  try {
+    const Lens stay_lens(lens);
+    const auto outside = [&](double x) { return !(x > stay_lens.lower() && x < stay_lens.upper()) && !(x == stay_lens.lower() && lens != "omega"); };
+    if (outside(lower) || outside(upper))
+      throw c.error(range_key,
+                    fmt::format("must lie in ({:g}, {:g}) [{}], the range of {}", stay_lens.lower(), stay_lens.upper(), stay_lens.unit(), lens));
+    if (!stay_lens.affects_cable()) return;
+    for (const double p : {lower, upper}) {  // the model must hold over the whole range
+      auto record = stay_of(c);
+      stay_lens.set(record, p);
+      (void)models::check(record.cable);
+    }
+  } catch (const std::invalid_argument& e) {
+    const std::string guess = nearest(lens, Lens::names());
+    const bool unknown = std::string_view(e.what()).starts_with("no parameter");
+    throw c.error(key, unknown && !guess.empty() ? fmt::format("no such parameter, did you mean {}?", guess) : e.what());
+  }
+}
+
+double forced_lens_value(const Configuration& c, const std::string& lens) {
+  return c.has("modal_model") ? modal_model_of(c).lens_value(lens) : Lens(lens).get(stay_of(c));
+}
+
 std::vector<std::string> check_forced_system(const Configuration& c) {
   if (!c.has("modal_model")) {
     (void)cable_model_of(c);

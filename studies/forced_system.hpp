@@ -25,6 +25,11 @@ struct ForcedSystem {
 /// [cable], [model], [damping], [support_motion], or [modal_model] in their place; omega.
 void add_forced_system_keys(Schema& schema);
 ForcedSystem forced_system_of(const Configuration& c, const std::vector<std::string>& lenses);
+/// The lens exists and the model takes it on [lower, upper]: InputError at `key` or `range_key` otherwise.
+void check_forced_lens(const Configuration& c, const std::string& key, const std::string& lens, const std::string& range_key, double lower,
+                       double upper);
+/// The value a lens has in the file.
+double forced_lens_value(const Configuration& c, const std::string& lens);
 /// Warnings about the validity of the model; refusals as InputError.
 std::vector<std::string> check_forced_system(const Configuration& c);
 /// Derived numbers of the cable into /cable; nothing for a model without one.

@@ -46,37 +46,27 @@ std::vector<Branch> OrbitBranches::all() const {
   return branches;
 }
 
-double OrbitBranches::truncation(const Branch& b, int level) const {
-  double worst = 0.0;
-  const int every = std::max(1, b.points() / truncation_samples);
-  for (int i = 0; i < b.points(); i += every) worst = std::max(worst, balance(level).truncation(b.u(i)).error);
-  for (const auto& s : b.special) worst = std::max(worst, balance(level).truncation(s.u).error);
-  return worst;
-}
-
 // Measures the truncation of a finished branch; too large: this pass ends, the next has the harmonics that the worst motion needs.
 void OrbitBranches::judge(const Branch& b, int level) {
   if (needed_ > 0 || b.points() == 0) return;
   const HarmonicBalance& hb = balance(level);
   double worst = 0.0;
   Vector at;
-  const int every = std::max(1, b.points() / truncation_samples);
-  const auto look = [&](In u) {
-    const double error = hb.truncation(u).error;
+  const auto look = [&](In u, const Vector& tangent) {
+    const double error = hb.truncation(u, tangent).error;
     if (error <= worst) return;
     worst = error;
     at = u;
   };
-  for (int i = 0; i < b.points(); i += every) look(b.u(i));
-  for (const auto& s : b.special) look(s.u);
-  const bool enough = worst <= options_.truncation_tolerance || options_.harmonics > 0 || harmonics_ >= options_.max_harmonics;
-  if (enough) {
-    if (on_branch_) on_branch_(b, level);
+  const int every = std::max(1, b.points() / truncation_samples);
+  for (int i = 0; i < b.points(); i += every) look(b.u(i), b.tangent(i));
+  for (const auto& s : b.special) look(s.u, s.tangent);
+  if (worst <= options_.truncation_tolerance || options_.harmonics > 0 || harmonics_ >= options_.max_harmonics) {
+    if (on_branch_) on_branch_(b, level, worst);
     return;
   }
-  const OrbitOptions o{.tolerance = 0.3 * options_.truncation_tolerance, .max_harmonics = options_.max_harmonics << level};
-  const Orbit orbit = solve_orbit(hb, at, o);
-  needed_ = std::clamp((orbit.problem->harmonics() >> level) + 1, harmonics_ + options_.nu, options_.max_harmonics);
+  const int enough = hb.harmonics_for(at, 0.1 * options_.truncation_tolerance / worst) >> level;
+  needed_ = std::clamp(enough, harmonics_ + options_.nu, std::min(2 * harmonics_, options_.max_harmonics));
 }
 
 void OrbitBranches::seed_linear() {

@@ -22,16 +22,16 @@ struct OrbitBranchOptions {
   int harmonics = 0;                   ///< of omega/nu; 0: as many as the tolerance needs
   double truncation_tolerance = 1e-9;  ///< on the motion, relative; see models::Truncation
   int max_harmonics = 120;
-  int period_doublings = 1;            ///< how often a branch of doubled period is followed
-  int seed_grid = 9;                   ///< parameter values at which the linear response is tried
-  std::vector<Vector> seeds;           ///< further starts: values of q at rest, integrated at every `seed_values`
-  std::vector<double> seed_values;     ///< parameter values
+  int period_doublings = 1;         ///< how often a branch of doubled period is followed
+  int seed_grid = 9;                ///< parameter values at which the linear response is tried
+  std::vector<Vector> seeds;        ///< further starts: values of q at rest, integrated at every `seed_values`
+  std::vector<double> seed_values;  ///< parameter values
   models::SettleOptions settle;
 };
 
 class OrbitBranches {
  public:
-  using OnBranch = std::function<void(const continuation::Branch&, int level)>;
+  using OnBranch = std::function<void(const continuation::Branch&, int level, double truncation)>;
 
   OrbitBranches(ForcedSystem source, OrbitBranchOptions options, RunContext& context);
 
@@ -47,7 +47,6 @@ class OrbitBranches {
   int levels() const { return options_.period_doublings + 1; }
   int period(int level) const { return options_.nu << level; }  ///< in excitation periods
   std::vector<continuation::Branch> all() const;
-  double truncation(const continuation::Branch& b, int level) const;  ///< largest error over its special points and every few points
   /// Periodic motions at parameter value p: branch, level, unknowns, stable.
   struct Motion {
     std::string branch;

@@ -2,17 +2,23 @@
 
 #include <fmt/format.h>
 
+#include "studies/basins_study.hpp"
 #include "studies/continuation_study.hpp"
+#include "studies/integrate_study.hpp"
 #include "studies/mode_convergence_study.hpp"
 #include "studies/modes_study.hpp"
+#include "studies/periodic_study.hpp"
+#include "studies/slow_flow_study.hpp"
 #include "studies/superharmonic_study.hpp"
 #include "studies/two_parameter_study.hpp"
 
 namespace whirl::studies {
 
 const std::vector<StudyKind>& study_kinds() {
-  static const std::vector<StudyKind> kinds = {superharmonic_study(), continuation_study(), two_parameter_study(), modes_study(),
-                                               mode_convergence_study()};
+  static const std::vector<StudyKind> kinds = {
+      superharmonic_study(), continuation_study(), two_parameter_study(), periodic_study(),         slow_flow_study(),
+      integrate_study(),     basins_study(),       modes_study(),         mode_convergence_study(),
+  };
   return kinds;
 }
 

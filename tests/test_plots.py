@@ -165,6 +165,112 @@ def mode_convergence(path):
                                      "peak": 1.1 - 0.02 / n, "peak_omega": 1.61 + 0.001 * n})
 
 
+def slow_flow(path):
+    """In plane from 1.9 to 2.2 rad/s; a coupled motion of period 2T from 1.95 on; settled motions of both kinds at 2.1."""
+    with h5py.File(path, "w") as file:
+        study(file, "slow-flow")
+        file["study"].attrs.update({"nu": 2.0, "ansatz.kind": "combinatorial-32", "ansatz.motion": "coupled"})
+        omega = np.linspace(1.9, 2.2, 13)
+        for name, A, unstable, modulus in (("IP1", 0, omega > 1.95, 0.9 + 0.4 * (omega > 2.0)), ("WD1", 1, omega < 0, 0.8)):
+            table(file, f"/branches/{name}", {
+                "omega": omega, "q1_h0.5": A * (omega - 1.8), "q1_h1.5": 2 * A * (omega - 1.8), "q2_h0": 0.3 + 0 * omega, "q2_h1": omega / 2,
+                "q2_h2": 1 / omega, "n_unstable": unstable, "floquet_modulus": modulus + 0 * omega, "arclength": np.arange(13.0)})
+        table(file, "/special_points", {
+            "branch": ["IP1"], "label": ["BP1"], "type": ["BP"], "subtype": ["WH"], "omega": [1.95], "q1_h0.5": [0.0], "q1_h1.5": [0.0],
+            "q2_h0": [0.3], "q2_h1": [0.975], "q2_h2": [0.51], "arclength": [2.0], "unstable_before": [0], "unstable_after": [1]})
+        table(file, "/verification/runs", {
+            "omega": [2.1, 2.1, 2.1], "q1_h0.5": [0.3, 0.3, 0.0], "q1_h1.5": [0.6, 0.6, 0.0], "q2_h0": [0.3] * 3, "q2_h1": [1.0] * 3,
+            "q2_h2": [0.5] * 3, "motion": ["periodic"] * 3, "multiple": [2.0] * 3, "branch": ["WD1", "WD1", ""]})
+
+        def coupled(t, size):
+            w = 2.1
+            return {"t": t, "q1": size * (np.cos(w * t / 2) + 2 * np.cos(1.5 * w * t)), "q2": 0.3 + np.cos(w * t) + 0.5 * np.cos(2 * w * t)}
+
+        span = 4 * np.pi / 2.1
+        for run, size in ((1, 0.3), (2, -0.3), (3, 0.0)):
+            about = {"omega": 2.1, "motion": "periodic", "multiple": 2.0, "start": "q1 = 3, q2 = 0"}
+            table(file, f"/verification/series/run{run}", coupled(span * np.arange(64) / 64, size)).attrs.update(about)
+            h = np.arange(11) / 2
+            table(file, f"/verification/spectra/run{run}", {"harmonic": h, "q1": abs(size) * 10.0 ** -h, "q2": 10.0 ** -h}).attrs.update(about)
+        table(file, "/verification/transients/run2", coupled(np.linspace(0, 9 * span, 400), 1.0)).attrs.update(about)
+        for name, size in (("w2.1000-1", 0.35), ("w2.1000-2", 0.2)):
+            orbit = table(file, f"/verification/averaged/{name}", coupled(np.linspace(0, span, 129), size))
+            orbit.attrs.update({"omega": 2.1, "branch": "WD1", "stable": float(size > 0.3)})
+
+
+def states(omega, multiple, a1, a2, samples=64):
+    t = np.arange(samples * max(multiple, 8)) * 2 * np.pi / omega / samples if multiple == 0 else \
+        np.arange(samples * multiple) * 2 * np.pi / omega / samples
+    w = omega / multiple if multiple else 1.03 * omega
+    return {"t": t, "q1": a1 * np.cos(w * t), "q2": a2 * np.cos(omega * t), "q1'": -a1 * w * np.sin(w * t),
+            "q2'": -a2 * omega * np.sin(omega * t)}
+
+
+def attractor(file, group, omega, motion, multiple, a1, a2):
+    series = states(omega, multiple, a1, a2)
+    table(file, f"{group}/series", series)
+    columns = [q for q in series if q != "t"]
+    points = 300 if multiple == 0 else multiple
+    at = np.arange(points) * 2 * np.pi * (1.03 if multiple == 0 else 1 / multiple)
+    values = [a1 * np.cos(at), a2 + 0 * at, -a1 * np.sin(at), 0 * at]
+    table(file, f"{group}/section", dict(zip(columns, values)))
+    table(file, f"{group}/spectrum", {"coordinate": [1, 1, 2, 2], "harmonic": [0.5, 1.5, 1, 2], "amplitude": [a1, 0.1 * a1, a2, 0.01],
+                                      "phase": [0.0] * 4})
+    if multiple == 0:
+        h = np.arange(0, 8.01, 1 / 16)
+        table(file, f"{group}/amplitude_spectrum", {"harmonic": h, "q1": a1 * np.exp(-20 * (h - 1) ** 2) + 1e-4, "q2": 1e-3 + 0 * h})
+    file[group].attrs.update({"omega": omega, "motion": motion, "multiple": float(multiple)})
+
+
+def attractor_table(file, path, names, omega, motion, multiple, extra):
+    rows = len(names)
+    table(file, path, {"attractor": names, "motion": motion, "mirror": ["A2", "A1"] + [""] * (rows - 2), "omega": omega,
+                       "multiple": multiple, "lyapunov": [-0.03] * rows, "lyapunov_error": [0.001] * rows,
+                       "second_frequency": [0.0] * (rows - 1) + [0.03], **extra})
+
+
+def integrated(path):
+    """Two mirror images of period one, a motion of period two, a quasi-periodic one; two sweeps with a jump and a change."""
+    with h5py.File(path, "w") as file:
+        study(file, "integrate")
+        file["study"].attrs.update({"sweep.parameter": "omega", "integrate.section_phase_deg": 0.0})
+        names, kinds, multiple = ["A1", "A2", "A3", "A4"], ["periodic"] * 3 + ["quasi-periodic"], [1, 1, 2, 0]
+        omega = [1.65, 1.65, 2.1, 1.75]
+        for name, kind, m, w in zip(names, kinds, multiple, omega):
+            attractor(file, f"/integrate/{name}", w, kind, m, 1.5, 1.0)
+        attractor_table(file, "/integrate/attractors", names, omega, kinds, multiple, {})
+        table(file, "/integrate/runs", {"omega": omega, "start": ["q1 = 3"] * 4, "motion": kinds, "attractor": names})
+        for k, w in enumerate(omega):
+            table(file, f"/integrate/run{k + 1}", states(w, 8, 1.0, 2.0)).attrs.update({"omega": w, "start": "q1 = 3"})
+        p = np.linspace(1.4, 2.0, 13)
+        for way, at in (("up", 1.8), ("down", 1.7)):
+            table(file, f"/sweep/{way}", {"omega": p, "multiple": 1 + (p > 1.9), "q1_rms": np.where(p < at, 0.5 * p, 0), "q2_rms": p})
+            table(file, f"/sweep/transitions_{way}", {"before": [at - 0.01, 1.9], "after": [at + 0.01, 1.91], "jump": [1, 0],
+                                                      "q1_rms_before": [0.9, 0], "q1_rms_after": [0, 0], "q2_rms_before": [1.8, 1.9],
+                                                      "q2_rms_after": [1.8, 1.9], "what": ["jump", "change"]})
+
+
+def basin_map(path):
+    """Half a plane each for two mirror images, a disc of a third, a corner that diverges, one cell unsettled."""
+    with h5py.File(path, "w") as file:
+        study(file, "basins")
+        x, y = np.meshgrid(np.linspace(-3, 3, 31), np.linspace(-2, 2, 21))
+        number = np.where(x > 0, 1, 2)
+        number[x**2 + y**2 < 1] = 3
+        number[(x > 2) & (y > 1)] = -1
+        number[0, 0] = 0
+        table(file, "/basins/map", {"x": x.ravel(), "y": y.ravel(), "attractor": number.ravel(), "periods": 50 + 0 * x.ravel()})
+        file["basins"].attrs.update({"axes": ["q1", "q2"], "resolution": [31.0, 21.0], "omega": 1.65, "symmetry": "WH"})
+        file["basins/checked"], file["basins/disagreed"] = 20.0, 1.0
+        names, kinds, multiple = ["A1", "A2", "A3"], ["periodic", "periodic", "chaotic"], [1, 2, 0]
+        for name, kind, m in zip(names, kinds, multiple):
+            attractor(file, f"/basins/{name}", 1.65, kind, m, 1.5, 1.0)
+        attractor_table(file, "/basins/attractors", names, [1.65] * 3, kinds, multiple,
+                        {"number": [1, 2, 3], "share": [0.4, 0.4, 0.1], "cells": [260, 260, 65]})
+        table(file, "/basins/points", {"attractor": [1, 2, 2] + [3] * 40, "q1": np.linspace(-2, 2, 43), "q2": np.linspace(1, -1, 43),
+                                       "q1'": np.zeros(43), "q2'": np.zeros(43)})
+
+
 # --- helpers ---------------------------------------------------------------------------------------------------------------
 
 def plot(*arguments):
@@ -176,14 +282,14 @@ def check(condition, words):
         raise AssertionError(words)
 
 
-def check_picture(path):
-    """A PNG of a page's size with ink of several colours on it."""
+def check_picture(path, most=0.6):
+    """A PNG of a page's size with ink of several colours on it, on at most a share of it."""
     from matplotlib.image import imread
     pixels = imread(path)
     check(pixels.shape[0] > 300 and pixels.shape[1] > 500, f"{path}: {pixels.shape}")
     colours = np.unique((pixels[..., :3] * 15).astype(int).reshape(-1, 3), axis=0)
     ink = np.mean(np.any(pixels[..., :3] < 0.9, axis=-1))
-    check(len(colours) > 20 and 0.005 < ink < 0.6, f"{path}: {len(colours)} colours, {ink:.3f} of it inked")
+    check(len(colours) > 20 and 0.005 < ink < most, f"{path}: {len(colours)} colours, {ink:.3f} of it inked")
 
 
 def check_document(path):
@@ -260,6 +366,33 @@ def test_error_against_nearest_stable(folder):
     check(whirling.averaged.stable and whirling.averaged.A > 0.2 and whirling.counterpart, str(whirling))
 
 
+def test_slow_flow_figures(folder):
+    path = os.path.join(folder, "comb.h5")
+    slow_flow(path)
+    done = plot(path, "--format", "png")
+    check(done.returncode == 0 and done.stderr == "", done.stderr)
+    names = [f"comb-{n}.png" for n in ("orbits", "response", "starts", "time")]
+    check(sorted(os.listdir(folder)) == sorted(["comb.h5", *names]), str(os.listdir(folder)))
+    for name in names:
+        check_picture(os.path.join(folder, name))
+
+
+def test_slow_flow_reading(folder):
+    """Mirror images count once; a doubt is where Floquet multipliers and averaged stability differ; the partner is turned to the run's side."""
+    from figures_slow_flow import aligned, contradicted, fraction, motions
+    from result_file import read
+    path = os.path.join(folder, "comb.h5")
+    slow_flow(path)
+    result = read(path)
+    found = motions(result)
+    check([(m.run, m.branch, m.words()) for m in found] == [(1, "WD1", "coupled, 2T"), (3, "", "in plane, 2T")], str(found))
+    omega = result.group("branches/IP1").column("omega")
+    check(np.array_equal(contradicted(result.group("branches/IP1")), (omega > 1.95) & (omega <= 2.0)), "doubts")
+    _, integrated, nearest = aligned(result, found[0])
+    check(np.max(np.abs(integrated["q1"] - 0.3 / 0.35 * nearest["q1"])) < 0.02, "the stable partner, on the run's side")
+    check([fraction(h) for h in (1, 2, 0.5, 1.5)] == [r"$\omega$", r"2$\omega$", r"$\omega$/2", r"3$\omega$/2"], fraction(0.5))
+
+
 def test_two_parameter_chart(folder):
     path = os.path.join(folder, "plane.h5")
     two_parameter(path)
@@ -333,6 +466,48 @@ def test_mode_convergence_figure(folder):
     check_picture(os.path.join(folder, "modes-convergence.png"))
     words = sentence(read(path).group("convergence"), ["galerkin", "quasi-static"])
     check("1.9 % at 1" in words and "differ by 0 %" in words, words)
+
+
+def check_figures(path, names, most=0.6):
+    done = plot(path)
+    check(done.returncode == 0 and done.stderr == "", done.stderr)
+    stem = os.path.splitext(path)[0]
+    expected = sorted(f"{stem}-{n}.{f}" for n in names for f in ("png", "pdf"))
+    check(sorted(done.stdout.split("\n")[:-1]) == expected, done.stdout)
+    for p in expected:
+        if p.endswith("png"):
+            check_picture(p, most)
+        else:
+            check_document(p)
+
+
+def test_integrate_figures(folder):
+    path = os.path.join(folder, "motions.h5")
+    integrated(path)
+    check_figures(path, ["beginnings", "motions", "sections", "sweep"])
+    with h5py.File(path, "r+") as file:  # a run of sweeps alone
+        del file["integrate"]
+    done = plot(path, "-o", os.path.join(folder, "alone"), "--format", "png")
+    check(done.returncode == 0 and os.listdir(os.path.join(folder, "alone")) == ["motions-sweep.png"], done.stderr + done.stdout)
+
+
+def test_basins_figures(folder):
+    path = os.path.join(folder, "map.h5")
+    basin_map(path)
+    check_figures(path, ["basins", "periods", "motions"], most=0.9)  # a map is coloured all over
+
+
+def test_basins_reading(folder):
+    """Rows of the map run along the first axis; a region's depth peels from its border; points of an attractor are its own."""
+    from figures_basins import Points, depth, plane
+    from result_file import read
+    path = os.path.join(folder, "map.h5")
+    basin_map(path)
+    x, y, cells = plane(read(path))
+    check(len(x) == 31 and len(y) == 21 and cells.shape == (21, 31), str(cells.shape))
+    check(cells[10, 15] == 3 and cells[10, 28] == 1 and cells[10, 2] == 2 and cells[20, 30] == -1 and cells[0, 0] == 0, str(cells))
+    check(depth(np.ones((5, 7), dtype=bool)).max() == 3, "depth of a block")
+    check(len(Points(read(path).group("basins/points"), 2).column("q1")) == 2, "points")
 
 
 def test_truncated(folder):

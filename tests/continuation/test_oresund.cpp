@@ -59,6 +59,8 @@ void* operator new(std::size_t n, const std::nothrow_t&) noexcept {
 void operator delete(void* p) noexcept { std::free(p); }
 void operator delete(void* p, std::size_t) noexcept { std::free(p); }
 void operator delete(void* p, const std::nothrow_t&) noexcept { std::free(p); }
+std::size_t allocations_so_far();  // for the other tests of this program
+std::size_t allocations_so_far() { return allocations; }
 #endif
 
 TEST_CASE("every special point of the Oresund stay, U = 0.5 m, n = 2") {

@@ -1,0 +1,158 @@
+#include "studies/orbit_output.hpp"
+
+#include <fmt/format.h>
+
+#include <numbers>
+
+#include "core/parallel.hpp"
+
+namespace whirl::studies {
+
+using namespace models;
+
+namespace {
+
+constexpr int samples = 512;  // of a period, for peaks and series
+
+// Amplitude and phase of harmonic k omega in coordinate i; zero where the motion's balance has no such harmonic.
+std::complex<double> amplitude(const HarmonicBalance& hb, In u, int i, double k) {
+  const double multiple = k * hb.nu();
+  const int h = static_cast<int>(std::lround(multiple));
+  if (std::abs(multiple - h) > 1e-9 || h > hb.harmonics()) return 0.0;
+  if (h == 0) return u[hb.index(i, 0)];
+  return {u[hb.index(i, h)], -u[hb.index(i, h) + 1]};
+}
+
+double displacement(const HarmonicBalance& hb, In u, int i, double theta) {
+  double q = u[hb.index(i, 0)];
+  for (int k = 1; k <= hb.harmonics(); ++k) q += u[hb.index(i, k)] * std::cos(k * theta) + u[hb.index(i, k) + 1] * std::sin(k * theta);
+  return q;
+}
+
+double farthest(const Eigen::VectorXcd& from, const Eigen::VectorXcd& to) {
+  double worst = 0.0;
+  for (const auto& a : from) worst = std::max(worst, (to.array() - a).abs().minCoeff() / std::max(1.0, std::abs(a)));
+  return worst;
+}
+
+}  // namespace
+
+std::string harmonic_name(const std::string& coordinate, double k) { return fmt::format("{}_h{:g}", coordinate, k); }
+
+// A parabola through the largest sample and its neighbours: the error falls with the fourth power of the spacing.
+double peak(const HarmonicBalance& hb, In u, int coordinate) {
+  Vector q(samples);
+  const double step = 2.0 * std::numbers::pi / samples;
+  for (int m = 0; m < samples; ++m) q[m] = std::abs(displacement(hb, u, coordinate, m * step));
+  Eigen::Index at = 0;
+  const double top = q.maxCoeff(&at), before = q[(at + samples - 1) % samples], after = q[(at + 1) % samples], bend = before - 2.0 * top + after;
+  return bend < 0.0 ? top - 0.125 * (after - before) * (after - before) / bend : top;
+}
+
+BranchOutput orbit_output(const OrbitBranches& orbits, const std::string& parameter, int harmonics) {
+  BranchOutput out;
+  const ForcedSystem& source = orbits.source();
+  out.parameter = parameter;
+  out.parameter_unit = source.lens_units.front();
+  out.multipliers = true;
+  out.period_of = [&orbits](In u) { return static_cast<double>(orbits.balance_of(u).nu()); };
+  const int finest = orbits.period(orbits.levels() - 1);
+  for (std::size_t c = 0; c < source.coordinates.size(); ++c) {
+    const int i = static_cast<int>(c);
+    const std::string& q = source.coordinates[c];
+    out.columns.push_back(
+        {q + "_max", source.length_unit, "largest |" + q + "| over the period", [&orbits, i](In u) { return peak(orbits.balance_of(u), u, i); }});
+    for (int h = 0; h <= harmonics * finest; ++h) {
+      const double k = static_cast<double>(h) / finest;
+      const std::string name = harmonic_name(q, k);
+      out.columns.push_back({name, source.length_unit, fmt::format("amplitude of cos({:g} omega t + phase) in {}", k, q), [&orbits, i, k](In u) {
+                               return k == 0.0 ? amplitude(orbits.balance_of(u), u, i, k).real() : std::abs(amplitude(orbits.balance_of(u), u, i, k));
+                             }});
+      if (h > 0)
+        out.columns.push_back(
+            {name + "_phase", "rad", "its phase", [&orbits, i, k](In u) { return std::arg(amplitude(orbits.balance_of(u), u, i, k)); }});
+    }
+  }
+  if (parameter == "omega")
+    out.columns.push_back({"frequency", "Hz", "omega / 2 pi", [](In u) { return u[u.size() - 1] / (2.0 * std::numbers::pi); }});
+  // The printed table: peaks and whole harmonics of the first two coordinates.
+  for (auto& column : out.columns)
+    for (std::size_t c = 0; c < std::min<std::size_t>(2, source.coordinates.size()); ++c)
+      column.shown = column.shown || column.name == source.coordinates[c] + "_max" || column.name == source.coordinates[c] + "_h1";
+  return out;
+}
+
+void write_orbit(ResultFile& file, const std::string& group, const OrbitBranches& orbits, const OrbitBranches::Motion& motion) {
+  const HarmonicBalance& hb = orbits.balance(motion.level);
+  const ForcedSystem& source = orbits.source();
+  const double period = 2.0 * std::numbers::pi * hb.nu() / hb.system_at(motion.u).omega;
+  const auto n = source.coordinates.size();
+  std::vector<Column> table{{"t", "s", "time, cos(omega t) = 1 at t = 0", {}}};
+  for (const auto& q : source.coordinates) table.push_back({q, source.length_unit, "displacement", {}});
+  for (const auto& q : source.coordinates) table.push_back({q + "_rate", source.length_unit == "m" ? "m/s" : "1/s", "velocity", {}});
+  for (int m = 0; m <= 256; ++m) {
+    const double t = period * m / 256;
+    const Vector y = hb.state_at(motion.u, t);
+    table[0].values.push_back(t);
+    for (std::size_t i = 0; i < 2 * n; ++i) table[i + 1].values.push_back(y[static_cast<Eigen::Index>(i)]);
+  }
+  file.table(group, table);
+  file.attribute(group, "branch", motion.branch);
+  file.attribute(group, "stable", motion.stable ? 1.0 : 0.0);
+  file.attribute(group, "period", static_cast<double>(hb.nu()));
+  file.attribute(group, "omega", hb.system_at(motion.u).omega);
+}
+
+std::vector<OrbitCheck> check_orbits(const OrbitBranches& orbits, const std::vector<double>& values, RunContext& context) {
+  std::vector<OrbitCheck> checks;
+  for (const double p : values)
+    for (auto& motion : orbits.motions_at(p)) checks.push_back({p, motion, 0.0, 0.0, false});
+  std::atomic<int> done{0};
+  parallel_for(checks.size(), [&](std::size_t i) {
+    if (interrupted) return;
+    OrbitCheck& check = checks[i];
+    HarmonicBalance hb = orbits.balance(check.motion.level);  // scratch of its own
+    const Vector start = hb.state_at(check.motion.u, 0.0);
+    const IntegratedPeriod period = monodromy_by_integration(hb.system_at(check.motion.u), start, hb.nu(), 1e-11);
+    check.ok = period.ok;
+    if (!period.ok) return;
+    check.defect = (period.end - start).norm() / (start.norm() > 0.0 ? start.norm() : 1.0);
+    check.multiplier = farthest(hb.floquet(check.motion.u).multipliers, period.monodromy.eigenvalues());
+    context.progress.show(fmt::format("checking motions by integration, {} of {}", ++done, checks.size()));
+  });
+  context.progress.clear();
+  return checks;
+}
+
+void write_checks(ResultFile& file, const OrbitBranches& orbits, const std::vector<OrbitCheck>& checks) {
+  std::vector<Column> table{{"parameter", orbits.source().lens_units.front(), "continuation parameter", {}},
+                            {"period", "-", "in excitation periods", {}},
+                            {"stable", "-", "1: no multiplier outside the unit circle", {}},
+                            {"defect", "-", "|x(nu T) - x(0)| / |x(0)|, CVODE at 1e-11", {}},
+                            {"multiplier_error", "-", "largest distance of a multiplier from the nearest integrated one, relative above 1", {}},
+                            {"truncation_error", "-", "bound on what the harmonics left out change", {}}};
+  TextColumn branch{"branch", "branch the motion lies on", {}};
+  for (const auto& c : checks) {
+    const double numbers[] = {c.p,
+                              static_cast<double>(orbits.period(c.motion.level)),
+                              c.motion.stable ? 1.0 : 0.0,
+                              c.ok ? c.defect : std::nan(""),
+                              c.ok ? c.multiplier : std::nan(""),
+                              orbits.balance(c.motion.level).truncation(c.motion.u).error};
+    for (std::size_t i = 0; i < table.size(); ++i) table[i].values.push_back(numbers[i]);
+    branch.values.push_back(c.motion.branch);
+  }
+  file.table("/verification/orbits", table, {branch});
+}
+
+std::string checks_text(const OrbitBranches& orbits, const std::vector<OrbitCheck>& checks, const std::string& parameter) {
+  std::string out =
+      fmt::format("{:>12} {:<7} {:>6} {:>7} {:>12} {:>12} {:>12}\n", parameter, "branch", "period", "stable", "defect", "multipliers", "truncation");
+  for (const auto& c : checks)
+    out += fmt::format("{:>12.6g} {:<7} {:>6} {:>7} {:>12.1e} {:>12.1e} {:>12.1e}\n", c.p, c.motion.branch, orbits.period(c.motion.level),
+                       c.motion.stable ? "yes" : "no", c.ok ? c.defect : std::nan(""), c.ok ? c.multiplier : std::nan(""),
+                       orbits.balance(c.motion.level).truncation(c.motion.u).error);
+  return out;
+}
+
+}  // namespace whirl::studies

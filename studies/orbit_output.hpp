@@ -1,0 +1,35 @@
+#pragma once
+/// What a person reads of a periodic motion: amplitudes per coordinate and harmonic, peak displacement; motions over time; and how well an
+/// integration agrees.
+
+#include "studies/branch_output.hpp"
+#include "studies/orbit_branches.hpp"
+
+namespace whirl::studies {
+
+/// Columns q<i>_h<k> (k in multiples of the excitation frequency, up to `harmonics`), their phases, q<i>_max, and derived frequencies. `orbits` must
+/// live on.
+BranchOutput orbit_output(const OrbitBranches& orbits, const std::string& parameter, int harmonics);
+
+/// "q1_h2", "q1_h0.5"
+std::string harmonic_name(const std::string& coordinate, double k);
+
+/// Largest |q_i| over the period.
+double peak(const models::HarmonicBalance& hb, In u, int coordinate);
+
+/// One period of the motion as t, q..., q'... into `group`.
+void write_orbit(ResultFile& file, const std::string& group, const OrbitBranches& orbits, const OrbitBranches::Motion& motion);
+
+/// The motion carried over its period by CVODE: how far its end misses its start, and its multipliers those of the integration.
+struct OrbitCheck {
+  double p;
+  OrbitBranches::Motion motion;
+  double defect;      ///< |end - start| over |start|
+  double multiplier;  ///< largest distance of a multiplier from the nearest integrated one
+  bool ok;
+};
+std::vector<OrbitCheck> check_orbits(const OrbitBranches& orbits, const std::vector<double>& values, RunContext& context);
+void write_checks(ResultFile& file, const OrbitBranches& orbits, const std::vector<OrbitCheck>& checks);
+std::string checks_text(const OrbitBranches& orbits, const std::vector<OrbitCheck>& checks, const std::string& parameter);
+
+}  // namespace whirl::studies

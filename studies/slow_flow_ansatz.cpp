@@ -1,0 +1,104 @@
+#include "studies/slow_flow_ansatz.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "models/slow_flow/combinatorial_printed.hpp"
+
+namespace whirl::studies {
+
+using namespace models;
+
+namespace {
+
+constexpr int listed_coordinates = 8;  // ansatz.q1 .. ansatz.q8
+
+Ansatz listed_ansatz(const Configuration& c, int coordinates) {
+  std::vector<std::vector<double>> lists;
+  for (int i = 1; i <= listed_coordinates; ++i) {
+    const std::string key = fmt::format("ansatz.q{}", i);
+    if (i <= coordinates) lists.push_back(c.numbers(key));
+    else if (!c.numbers(key).empty()) throw c.error(key, fmt::format("the model has {} coordinates", coordinates));
+    try {
+      if (!c.numbers(key).empty()) (void)Ansatz::list({c.numbers(key)});
+    } catch (const std::invalid_argument& e) {
+      throw c.error(key, e.what());
+    }
+  }
+  if (std::all_of(lists.begin(), lists.end(), [](const auto& l) { return l.empty(); }))
+    throw c.error("ansatz.kind", "needs a list of harmonics: set ansatz.q1 = [...] or another coordinate's");
+  return Ansatz::list(lists, c.flag("ansatz.frozen"));
+}
+
+}  // namespace
+
+void add_ansatz_keys(Schema& s) {
+  s.add({.name = "ansatz.kind",
+         .description = "harmonics kept: 0..H of omega/nu in all coordinates, your lists, n omega with the linear response frozen, or the paper's "
+                        "combinatorial response (3,2) by exact projection or with its printed terms only",
+         .default_value = std::string("combinatorial-32"),
+         .choices = {"complete", "list", "frozen", "combinatorial-32", "combinatorial-32-printed"}});
+  s.add({.name = "ansatz.motion",
+         .description = "of the combinatorial response: q1 at 1/2, 3/2 and q2 at 0, 1, 2 (60), or q2 at 1/2, 1, 3/2 (70)",
+         .default_value = std::string("coupled"),
+         .choices = {"coupled", "in-plane"}});
+  const auto whole = [&](const std::string& name, const std::string& description, std::int64_t value, double lower, double upper) {
+    s.add({.name = name,
+           .description = description,
+           .default_value = value,
+           .lower = lower,
+           .upper = upper,
+           .closed_lower = true,
+           .closed_upper = true});
+  };
+  whole("ansatz.harmonics", "H of the complete ansatz, in units of omega/nu", 8, 1, 200);
+  whole("ansatz.nu", "of the complete ansatz: the motion repeats after nu excitation periods", 1, 1, 16);
+  whole("ansatz.order", "n of the frozen ansatz", 2, 1, 50);
+  s.add({.name = "ansatz.frozen",
+         .description = "of a list: forced harmonics outside it stay in the motion as the linear response",
+         .default_value = false});
+  for (int i = 1; i <= listed_coordinates; ++i)
+    s.add({.name = fmt::format("ansatz.q{}", i),
+           .description = fmt::format("of a list: harmonics of coordinate {}, in multiples of omega, fractions allowed; 0 is the mean", i),
+           .default_value = std::vector<double>{},
+           .lower = 0.0,
+           .upper = 200.0,
+           .closed_lower = true});
+}
+
+AveragedEquations averaged_of(const Configuration& c, const ForcedSystem& forced) {
+  const int n = static_cast<int>(forced.coordinates.size());
+  const std::string& kind = c.text("ansatz.kind");
+  const bool coupled = c.text("ansatz.motion") == "coupled";
+  AveragedEquations a;
+  if (kind.starts_with("combinatorial") && n != 2) throw c.error("ansatz.kind", fmt::format("is for two coordinates, the model has {}", n));
+  try {
+    if (kind == "combinatorial-32-printed") {
+      auto flow = std::make_unique<PrintedCombinatorialFlow>(forced.system, coupled ? CombinatorialMotion::coupled : CombinatorialMotion::in_plane);
+      a.ansatz = flow->ansatz();
+      a.balance_harmonics = a.ansatz.highest();
+      const Ansatz ansatz = a.ansatz;
+      const int size = ansatz.size();
+      a.motion = [ansatz, size, &forced](In u, double t) { return motion_at(ansatz, u.head(size), forced.at(u.tail(1)).omega, t); };
+      a.balance_state = [ansatz, size](In u) { return balance_state(ansatz, u.head(size), ansatz.highest()); };
+      a.flow = std::move(flow);
+      return a;
+    }
+    if (kind == "complete") a.ansatz = Ansatz::complete(n, static_cast<int>(c.integer("ansatz.harmonics")), static_cast<int>(c.integer("ansatz.nu")));
+    else if (kind == "list") a.ansatz = listed_ansatz(c, n);
+    else if (kind == "frozen") a.ansatz = Ansatz::superharmonic(n, static_cast<int>(c.integer("ansatz.order")));
+    else a.ansatz = coupled ? Ansatz::combinatorial_coupled() : Ansatz::combinatorial_in_plane();
+    auto flow = std::make_unique<SlowFlow>(forced.system, a.ansatz, forced.reflections);
+    const SlowFlow* f = flow.get();
+    a.motion = [f](In u, double t) { return f->motion(u, t); };
+    a.balance_state = [f](In u) { return f->balance_state(u); };
+    a.balance_harmonics = f->balance_harmonics();
+    a.flow = std::move(flow);
+  } catch (const std::invalid_argument& e) {
+    throw c.error("ansatz.kind", e.what());
+  }
+  return a;
+}
+
+}  // namespace whirl::studies
