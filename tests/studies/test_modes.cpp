@@ -168,3 +168,30 @@ TEST_CASE("mode-convergence: bad input and what is not there") {
   CHECK(std::isnan(ResultReader(out.path).column("/convergence", "threshold").values.at(0)));
   CHECK(ResultReader(out.path).column("/convergence", "peak").values.at(0) == Approx(1.04989367).epsilon(1e-6));
 }
+
+TEST_CASE("an example study for each resonance") {
+  for (const char* file : {"resonance-primary.toml", "resonance-parametric.toml", "resonance-superharmonic.toml", "resonance-internal-1-1.toml",
+                           "resonance-internal-1-2.toml"})
+    CHECK(study_kind("periodic").check(read(file)).empty());
+  const auto special = [](const std::string& file, const std::string& type) {
+    const Output out;
+    const ResultReader result = run(out, read(file));
+    const auto types = result.text_column("/special_points", "type").values;
+    const auto omega = result.column("/special_points", "omega").values;
+    std::vector<double> found;
+    for (std::size_t i = 0; i < types.size(); ++i)
+      if (types[i] == type) found.push_back(omega[i]);
+    return found;
+  };
+  // Parametric: planar motion loses stability to twice its period out of plane just below 2 w(y1).
+  const auto doubled = special("resonance-parametric.toml", "PD");
+  REQUIRE(doubled.size() == 1);
+  CHECK(doubled[0] == Approx(55.4815).margin(1e-3));
+  // Internal 1:2: on both sides of w(z1) = 2 w(y1).
+  const auto pair = special("resonance-internal-1-2.toml", "PD");
+  REQUIRE(pair.size() >= 2);
+  auto cable = models::Cable<double>{200.0, 37.6e6, 20.83e3, 1.57, 0.0, 9.81};
+  const double w = 2.0 * models::shallow::ModeShape(models::shallow::statics(cable), cable, models::shallow::Family::out_of_plane, 1).omega();
+  CHECK((std::min(pair[0], pair[1]) < w && w < std::max(pair[0], pair[1])));
+  CHECK(special("resonance-primary.toml", "LP").size() == 2);
+}
