@@ -319,3 +319,19 @@ TEST_CASE("harmonic balance knows the symmetries of many modes") {
   REQUIRE(hb.reflections().size() == 1);
   CHECK(hb.reflections()[0].subtype == "WH");
 }
+
+TEST_CASE("integrated motion of many modes is the balanced one", "[slow]") {
+  CableModel m = cable(2, 3, Longitudinal::quasi_static);
+  m.stay.support_amplitude = 0.15;
+  m.stay.omega = 1.65;
+  const HarmonicBalance hb(cable_system(m, {Lens("omega")}), {.harmonics = 18, .reflections = cable_reflections(m)});
+  const auto at = newton(hb, hb.linear_response(Vector::Constant(1, 1.65)), {.max_iterations = 30});
+  REQUIRE(at.ok());
+  const Vector orbit = hb.state_at(at.x, 0.0);
+  Vector start = orbit;
+  start[0] += 1e-3;  // out of plane too
+  const SteadyMotion motion = settle(cable_equations(m), start, {.tolerance = 1e-9});
+  REQUIRE(motion.kind == MotionKind::periodic);
+  REQUIRE(motion.multiple == 1);
+  CHECK((motion.state - orbit).lpNorm<Eigen::Infinity>() < 1e-7);  // settled to 1e-9 of the state, integrated to 1e-10
+}
