@@ -24,7 +24,7 @@ struct GivenKey {
   double example;
 };
 const std::array<GivenKey, 5> given_keys = {{
-    {"cable.chord_tension", "N", "static tension along the chord; give this or one of the next four", Given::chord_tension, 37e3},
+    {"cable.chord_tension", "N", "static tension along the chord; 0: one of the next four is given", Given::chord_tension, 5.5e6},
     {"cable.sag", "m", "sag across the chord at midspan", Given::sag, 2.08},
     {"cable.unstressed_length", "m", "length before hanging", Given::unstressed_length, 199.86},
     {"cable.first_frequency", "Hz", "lowest frequency: first mode out of plane", Given::first_frequency, 0.384},
@@ -35,13 +35,16 @@ const std::array<GivenKey, 5> given_keys = {{
 Schema schema() {
   Schema s("modes", "statics, frequencies and mode shapes of a shallow cable, cross-over diagram, resonance conditions near");
   append_fields(s, [](std::string_view name) { return name.starts_with("cable.") && name != "cable.chord_tension"; });
-  for (const auto& k : given_keys)
+  for (const auto& k : given_keys) {
+    const bool tension = k.given == Given::chord_tension;  // shown by `whirl init`, so not optional; 0: not given
     s.add({.name = k.name,
            .unit = k.unit,
            .description = k.description,
-           .optional = true,
+           .optional = !tension,
            .lower = 0.0,
-           .example = k.given == Given::chord_tension ? std::optional<Value>(k.example) : std::nullopt});
+           .closed_lower = tension,
+           .example = tension ? std::optional<Value>(k.example) : std::nullopt});
+  }
   s.add({.name = "modes.count",
          .description = "modes of each plane in the table",
          .default_value = std::int64_t{6},
@@ -75,7 +78,7 @@ Schema schema() {
 const GivenKey& given_of(const Configuration& c) {
   const GivenKey* found = nullptr;
   for (const auto& k : given_keys) {
-    if (!c.is_given(k.name)) continue;
+    if (!c.is_given(k.name) || c.number(k.name) == 0.0) continue;
     if (found) throw c.error(k.name, fmt::format("is one too many beside {}: give one of the two", found->name));
     found = &k;
   }
