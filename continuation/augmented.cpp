@@ -23,6 +23,45 @@ void embed(In v, const Indices& block, Vector& full) {
   for (std::size_t i = 0; i < block.size(); ++i) full[block[i]] = v[static_cast<int>(i)];
 }
 
+// Small A: directions b, c of unit length (a zero behind them) that A, nearly singular, almost annihilates from the left and from the right. Borders
+// with which [A b; c' 0] is well conditioned: two rounds of solving with the borders so far, else singular vectors.
+void null_directions(const Matrix& a, Vector& b, Vector& c) {
+  const int m = static_cast<int>(a.rows());
+  Matrix bordered(m + 1, m + 1);
+  bordered.topLeftCorner(m, m) = a;
+  const double size = a.norm();
+  DenseLu lu(m + 1);
+  for (int i = 0; i < m; ++i) {  // no symmetry of a model is likely to be orthogonal to these
+    b[i] = 1.0 + 0.37 * std::cos(1.7 * i);
+    c[i] = 1.0 + 0.41 * std::sin(2.3 * i + 0.4);
+  }
+  b[m] = c[m] = 0.0;
+  bool fine = size > 0.0;
+  for (int round = 0; round < 3 && fine; ++round) {
+    b /= b.norm();
+    c /= c.norm();
+    bordered.col(m) = size * b;
+    bordered.row(m) = size * c.transpose();
+    lu.compute(bordered);
+    Vector v = Vector::Unit(m + 1, m), w = v;
+    lu.solve(v, v);
+    lu.solve_transposed(w, w);
+    v[m] = w[m] = 0.0;
+    fine = v.allFinite() && w.allFinite() && v.norm() > 0.0 && w.norm() > 0.0 && v.norm() * size < 1e8 && w.norm() * size < 1e8;
+    c = v;
+    b = w;
+  }
+  if (fine) {
+    b /= b.norm();
+    c /= c.norm();
+    return;
+  }
+  const Eigen::JacobiSVD<Matrix> svd(a, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  b.head(m) = svd.matrixU().col(m - 1);
+  c.head(m) = svd.matrixV().col(m - 1);
+  b[m] = c[m] = 0.0;
+}
+
 Indices all_coordinates(const Problem& f) {
   Indices all(static_cast<std::size_t>(f.size()));
   for (int i = 0; i < f.size(); ++i) all[static_cast<std::size_t>(i)] = i;
@@ -86,12 +125,18 @@ void SingularSystem::update_borders(In y) {
   spread(y);
   base_.jacobian(u_, j_);
   const int m = static_cast<int>(block_.size());
-  Vector right, left;
-  null_vectors(block_of(j_, block_), right, left);
-  // They come with any sign; keep it along a curve, so that test functions do not jump.
-  b_.head(m) = left.dot(b_.head(m)) < 0.0 ? -left : left;
-  c_.head(m) = right.dot(c_.head(m)) < 0.0 ? -right : right;
-  b_[m] = c_[m] = 0.0;
+  Vector b = Vector::Zero(m + 1), c = b;
+  if (m < DenseLu::small) {
+    null_directions(block_of(j_, block_), b, c);
+  } else {
+    Vector right, left;
+    null_vectors(block_of(j_, block_), right, left);
+    b.head(m) = left;
+    c.head(m) = right;
+  }
+  // Null vectors come with any sign; keep it along a curve, so that test functions do not jump.
+  b_ = b.dot(b_) < 0.0 ? Vector(-b) : b;
+  c_ = c.dot(c_) < 0.0 ? Vector(-c) : c;
 }
 
 void SingularSystem::solve_bordered() const {
@@ -100,9 +145,9 @@ void SingularSystem::solve_bordered() const {
   bordered_.col(m) = b_;
   bordered_.row(m) = c_.transpose();
   lu_.compute(bordered_);
-  const Vector e = Vector::Unit(m + 1, m);
-  v_ = lu_.solve(e);
-  w_ = lu_.transpose().solve(e);
+  v_ = w_ = Vector::Unit(m + 1, m);
+  lu_.solve(v_, v_);
+  lu_.solve_transposed(w_, w_);
 }
 
 void SingularSystem::do_residual(In y, Out r) const {
@@ -180,8 +225,10 @@ void BranchPointSystem::solve_bordered() const {
   lu_.compute(bordered_);
   Matrix e = Matrix::Zero(n + 2, 2);
   e(n, 0) = e(n + 1, 1) = 1.0;
-  v_ = lu_.solve(e);
-  w_ = lu_.transpose().solve(Vector(Vector::Unit(n + 2, n + 1)));
+  v_.resize(n + 2, 2);
+  for (int i = 0; i < 2; ++i) lu_.solve(e.col(i), v_.col(i));
+  w_ = Vector::Unit(n + 2, n + 1);
+  lu_.solve_transposed(w_, w_);
 }
 
 void BranchPointSystem::do_residual(In y, Out r) const {
@@ -284,8 +331,12 @@ void HopfSystem::solve_bordered(double kappa) const {
   lu_.compute(bordered_);
   Matrix e = Matrix::Zero(m + 2, 2);
   e(m, 0) = e(m + 1, 1) = 1.0;
-  x_ = lu_.solve(e);
-  y_ = lu_.transpose().solve(e);
+  x_.resize(m + 2, 2);
+  y_.resize(m + 2, 2);
+  for (int i = 0; i < 2; ++i) {
+    lu_.solve(e.col(i), x_.col(i));
+    lu_.solve_transposed(e.col(i), y_.col(i));
+  }
   g_ = x_.bottomRows(2);
 }
 
@@ -381,8 +432,9 @@ void PeakSystem::solve_bordered() const {
   }
   bordered_.row(s) = c_.transpose();
   lu_.compute(bordered_);
-  v_ = lu_.solve(Vector::Unit(s + 1, s));
-  w_ = lu_.transpose().solve(gradient_);
+  v_ = Vector::Unit(s + 1, s);
+  lu_.solve(v_, v_);
+  lu_.solve_transposed(gradient_, w_);
 }
 
 void PeakSystem::do_residual(In y, Out r) const {

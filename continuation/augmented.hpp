@@ -26,9 +26,8 @@
 ///                                              [   c'     ]     = [1]                                   [   c'     ]     = [  0   ]
 ///   Unknowns (x_S, p1 | p2 ...).
 
-#include <Eigen/LU>
-
 #include "continuation/blocks.hpp"
+#include "core/dense_lu.hpp"
 
 namespace whirl::continuation {
 
@@ -72,7 +71,7 @@ class SingularSystem : public AugmentedSystem {
   Indices block_;  // M
   Vector b_, c_;
   mutable Matrix bordered_;
-  mutable Eigen::PartialPivLU<Matrix> lu_;
+  mutable DenseLu lu_;
   mutable Vector v_, w_, full_;
 };
 
@@ -91,7 +90,7 @@ class BranchPointSystem : public AugmentedSystem {
   Vector b_;
   Matrix c_;
   mutable Matrix bordered_, v_;
-  mutable Eigen::PartialPivLU<Matrix> lu_;
+  mutable DenseLu lu_;
   mutable Vector w_, full_;
 };
 
@@ -113,7 +112,7 @@ class HopfSystem : public AugmentedSystem {
   double kappa0_ = 0.0;
   int entry_[2] = {0, 1};
   mutable Matrix a_, bordered_, x_, y_, g_;
-  mutable Eigen::PartialPivLU<Matrix> lu_;
+  mutable DenseLu lu_;
   mutable Vector full_;
 };
 
@@ -140,7 +139,7 @@ class PeakSystem : public AugmentedSystem {
   QuadraticForm form_;
   Vector c_;
   mutable Matrix bordered_;
-  mutable Eigen::PartialPivLU<Matrix> lu_;
+  mutable DenseLu lu_;
   mutable Vector v_, w_, gradient_, full_;
 };
 

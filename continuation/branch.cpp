@@ -85,7 +85,15 @@ void Branch::sort_special() {
 }
 
 Branch Branch::reversed() const {
-  Branch r = *this;
+  Branch r(size(), spectrum_size(), points_);  // not a copy: the storage may be far larger than what is used
+  r.points_ = points_;
+  r.special = special;
+  r.start_reason = start_reason;
+  r.stop_reason = stop_reason;
+  r.name = name;
+  r.born_at = born_at;
+  r.isola = isola;
+  r.active_reflections = active_reflections;
   for (int i = 0; i < points_; ++i) {
     const int j = points_ - 1 - i;
     r.u_.col(i) = u_.col(j);

@@ -1,16 +1,6 @@
 #include "continuation/curve.hpp"
 
 namespace whirl::continuation {
-namespace {
-
-bool negative_determinant(const Eigen::PartialPivLU<Matrix>& lu) {
-  bool negative = lu.permutationP().determinant() < 0;
-  for (int i = 0; i < lu.matrixLU().rows(); ++i) negative ^= lu.matrixLU()(i, i) < 0.0;
-  return negative;
-}
-
-}  // namespace
-
 Curve::Curve(const Problem& f, Blocks blocks, const CurveOptions& options)
     : f_(f),
       orbit_(dynamic_cast<const OrbitProblem*>(&f)),
@@ -56,7 +46,7 @@ Curve::Report Curve::correct(Out u, In normal, In anchor) {
   for (;;) {
     f_.linearise(u, r_, jacobian_);
     report.residual = r_.lpNorm<Eigen::Infinity>();
-    if (!std::isfinite(report.residual) || !jacobian_.allFinite()) return report;
+    if (!std::isfinite(report.residual)) return report;  // of the Jacobian: the step or the tangent is not finite then
     bordered_.topRows(n) = jacobian_;
     bordered_.row(n) = (normal.array() * weight_.array()).transpose();
     lu_.compute(bordered_);
@@ -67,7 +57,7 @@ Curve::Report Curve::correct(Out u, In normal, In anchor) {
     if (report.iterations == options_.max_iterations) return report;
     rhs_.head(n) = -r_;
     rhs_[n] = -((u - anchor).array() * normal.array() * weight_.array()).sum();
-    step_ = lu_.solve(rhs_);
+    lu_.solve(rhs_, step_);
     const double size = length(step_);
     if (!std::isfinite(size)) return report;
     u += step_;
@@ -86,7 +76,7 @@ bool Curve::complete(In u, Out tangent, Signature& signature) {
   const int n = f_.size();
   rhs_.setZero();
   rhs_[n] = 1.0;
-  tangent = lu_.solve(rhs_);
+  lu_.solve(rhs_, tangent);
   const double size = length(tangent);
   if (!std::isfinite(size) || size == 0.0) return false;
   tangent /= size;
@@ -108,13 +98,13 @@ bool Curve::complete(In u, Out tangent, Signature& signature) {
 
 // det r_x = t_p det [J; t'], and the determinants of the odd blocks divide out.
 void Curve::block_determinants(Signature& signature, bool forward) {
-  bool all = negative_determinant(lu_) ^ !forward;
+  bool all = lu_.negative_determinant() ^ !forward;
   for (std::size_t k = 1; k < blocks_.indices.size(); ++k) {
     const auto& indices = blocks_.indices[k];
     for (std::size_t c = 0; c < indices.size(); ++c)
       for (std::size_t r = 0; r < indices.size(); ++r) block_[k](static_cast<int>(r), static_cast<int>(c)) = jacobian_(indices[r], indices[c]);
     block_lu_[k].compute(block_[k]);
-    signature.negative[k] = negative_determinant(block_lu_[k]);
+    signature.negative[k] = block_lu_[k].negative_determinant();
     all ^= signature.negative[k];
   }
   signature.negative[0] = all;

@@ -6,10 +6,10 @@
 ///
 /// W is diagonal: lengths are measured in units of the parameter range and of the size of x, so that steps need no tuning.
 
-#include <Eigen/LU>
 #include <array>
 
 #include "continuation/spectrum.hpp"
+#include "core/dense_lu.hpp"
 #include "core/orbit_problem.hpp"
 
 namespace whirl::continuation {
@@ -100,9 +100,9 @@ class Curve {
   std::array<double, Signature::max_blocks> lead_{};
   Vector weight_, r_, step_, rhs_;
   Matrix jacobian_, bordered_;
-  Eigen::PartialPivLU<Matrix> lu_;
+  DenseLu lu_;
   std::vector<Matrix> block_;
-  std::vector<Eigen::PartialPivLU<Matrix>> block_lu_;
+  std::vector<DenseLu> block_lu_;
   double x_scale_ = 1.0, p_scale_ = 1.0;
 };
 

@@ -139,18 +139,37 @@ void EventFinder::look_closer(const Sample& before, const Sample& a, const Sampl
   }
 }
 
-// Halving has come to where the parabola through a, the middle and b is trusted: does a test function change sign at its vertex?
+// Halving has come to where a parabola is trusted: does a test function change sign at its extremum? The parabola is drawn anew through the
+// three nearest points until its extremum is settled.
 void EventFinder::look_at_extrema(const Sample& a, const Sample& middle, const Sample& b, int depth) {
-  const auto vertex = [](double from, double half, double to) { return 0.5 - 0.25 * (to - from) / (from - 2.0 * half + to); };
+  struct Knot {
+    double sigma, value;
+  };
   const int n = curve_.problem().size();
-  std::vector<double> fractions = {vertex(a.tangent[n], middle.tangent[n], b.tangent[n])};
-  for (std::size_t k = 0; k < leads(); ++k) fractions.push_back(vertex(a.lead[k], middle.lead[k], b.lead[k]));
-  for (const double sigma : fractions) {
-    Sample at;
-    if (!(sigma > 0.0 && sigma < 1.0) || !curve_.between(a, b, sigma, at) || !changed(a.signature, at.signature)) continue;
-    explain(a, at, depth);
-    explain(at, b, depth);
-    return;
+  const auto test = [&](const Sample& s, int which) { return which < 0 ? s.tangent[n] : s.lead[static_cast<std::size_t>(which)]; };
+  for (int which = -1; which < static_cast<int>(leads()); ++which) {
+    Knot l{0.0, test(a, which)}, m{0.5, test(middle, which)}, r{1.0, test(b, which)};
+    for (int i = 0; i < 8; ++i) {
+      const double from = (m.value - l.value) / (m.sigma - l.sigma), to = (r.value - m.value) / (r.sigma - m.sigma);
+      const double curvature = (to - from) / (r.sigma - l.sigma), slope = from + curvature * (m.sigma - l.sigma);  // at m
+      const double sigma = m.sigma - 0.5 * slope / curvature, extremum = m.value - 0.25 * slope * slope / curvature;
+      if (!(sigma > l.sigma && sigma < r.sigma) || std::abs(sigma - m.sigma) < 1e-9) break;
+      if (i > 0 && extremum * m.value > 0.0 && std::abs(extremum) > 0.5 * std::abs(m.value)) break;  // settled, away from zero
+      Sample at;
+      if (!curve_.between(a, b, sigma, at)) break;
+      if (changed(a.signature, at.signature)) {
+        explain(a, at, depth);
+        explain(at, b, depth);
+        return;
+      }
+      const Knot now{sigma, test(at, which)};
+      if (std::abs(now.value) < std::abs(m.value)) {
+        (sigma < m.sigma ? r : l) = m;
+        m = now;
+      } else {
+        (sigma < m.sigma ? l : r) = now;
+      }
+    }
   }
 }
 

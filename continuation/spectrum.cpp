@@ -26,6 +26,7 @@ Spectrum::Spectrum(const Blocks& blocks) : blocks_(&blocks), unstable_(Eigen::Ve
     const int m = static_cast<int>(indices.size());
     n += m;
     block_.emplace_back(m, m);
+    factors_.emplace_back();
     solver_.push_back(m > 2 ? std::make_unique<Eigen::EigenSolver<Matrix>>(m) : nullptr);
   }
   eigenvalues_ = Eigen::VectorXcd::Zero(n);
@@ -42,10 +43,12 @@ bool Spectrum::compute(MatrixIn jacobian) {
       for (int i = 0; i < m; ++i) a(i, j) = jacobian(indices[std::size_t(i)], indices[std::size_t(j)]);
     if (m == 1) eigenvalues_[first] = a(0, 0);
     if (m == 2) two_by_two(a, eigenvalues_[first], eigenvalues_[first + 1]);
-    if (m > 2) {
+    const bool few = m == 3 || m == 4;
+    if (m > 2 && !(few && factors_[k].eigenvalues(a, eigenvalues_.data() + first))) {
       solver_[k]->compute(a, false);
       if (solver_[k]->info() != Eigen::Success) return false;
       eigenvalues_.segment(first, m) = solver_[k]->eigenvalues();
+      if (few) factors_[k].restart(eigenvalues_.data() + first, m);
     }
     int count = 0;
     double lead = std::numeric_limits<double>::infinity();

@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "continuation/blocks.hpp"
+#include "continuation/characteristic.hpp"
 
 namespace whirl::continuation {
 
@@ -25,6 +26,7 @@ class Spectrum {
   const Blocks* blocks_;
   std::vector<Matrix> block_;
   std::vector<std::unique_ptr<Eigen::EigenSolver<Matrix>>> solver_;
+  std::vector<RealFactors> factors_;  // of blocks of size 3 and 4, from the point before
   Eigen::VectorXcd eigenvalues_;
   Eigen::VectorXi unstable_;
   Vector lead_;

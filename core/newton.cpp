@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/LU>
+#include "core/dense_lu.hpp"
 
 namespace whirl {
 
@@ -33,7 +33,7 @@ NewtonResult newton(const Problem& f, Vector start, const NewtonOptions& options
   NewtonResult result{std::move(start), 0.0, 0, Outcome::stalled};
   Vector r(n), dx(n);
   Matrix j(n, n + f.parameters());
-  Eigen::PartialPivLU<Matrix> lu(n);
+  DenseLu lu(n);
   double previous = std::numeric_limits<double>::infinity();
   int growing = 0;
   for (int i = 0; i <= options.max_iterations; ++i) {
@@ -45,7 +45,7 @@ NewtonResult newton(const Problem& f, Vector start, const NewtonOptions& options
     result.residual = r.lpNorm<Eigen::Infinity>();
     if (i == options.max_iterations) break;
     lu.compute(j.leftCols(n));
-    dx = lu.solve(r);
+    lu.solve(r, dx);
     if (!dx.allFinite()) {
       result.outcome = Outcome::singular;
       return result;

@@ -13,7 +13,13 @@ void SuperharmonicOptions::validate() const {
 SuperharmonicModel::SuperharmonicModel(const StayParameters<double>& stay, const SuperharmonicOptions& options, std::vector<Lens> lenses)
     : stay_(stay), options_(options), lenses_(std::move(lenses)), model_(stay_model(stay.cable, options.coefficients)) {
   options_.validate();
-  for (const auto& lens : lenses_) cable_moves_ = cable_moves_ || lens.affects_cable();
+  for (const auto& lens : lenses_) {
+    cable_moves_ = cable_moves_ || lens.affects_cable();
+    StayParameters<double> probe{};
+    lens.set(probe, 1.0);
+    moves_.push_back({probe.damping_out_of_plane == 1.0, probe.damping_in_plane == 1.0, probe.support_amplitude == 1.0, probe.omega == 1.0});
+  }
+  cable_ = cable_numbers(stay.cable, model_);
 }
 
 SuperharmonicFlow::SuperharmonicFlow(const StayParameters<double>& stay, const SuperharmonicOptions& options, std::vector<Lens> lenses)
@@ -36,11 +42,21 @@ void SuperharmonicFlow::evaluate(In u, double* r, MatrixOut j) const {
   for (int i = 0; i < K; ++i) p[std::size_t(i)] = seed<P>(u[4 + i], i);
   const auto cp = model().coefficients<P>(p);
   const double u1 = u[0], v1 = u[1], u2 = u[2], v2 = u[3];
-  std::array<P, 4> rp;
-  slow_flow<P, P>(cp, P(u1), P(v1), P(u2), P(v2), rp);
-  for (int row = 0; row < 4; ++row) {
-    if (r) r[row] = rp[std::size_t(row)].v;
-    for (int i = 0; i < K; ++i) j(row, 4 + i) = rp[std::size_t(row)].d[std::size_t(i)];
+  // 2 n w r is linear in the coefficients: d(2 n w r) = that of their slopes.
+  const auto part = [&](auto pick) {
+    return SlowFlowCoefficients<double>{pick(cp.nw2),     pick(cp.detuning1), pick(cp.detuning2), pick(cp.damping1), pick(cp.damping2),
+                                        pick(cp.g1),      pick(cp.g2),        pick(cp.g3),        pick(cp.g4),       pick(cp.load_re),
+                                        pick(cp.load_im), pick(cp.Z0_re),     pick(cp.Z0_im)};
+  };
+  std::array<double, 4> value, slope;
+  slow_flow<double, double>(part([](const P& x) { return x.v; }), u1, v1, u2, v2, value);
+  for (int row = 0; row < 4 && r; ++row) r[row] = value[std::size_t(row)];
+  for (int i = 0; i < K; ++i) {
+    auto slopes = part([i](const P& x) { return x.d[std::size_t(i)]; });
+    const double nw2_slope = slopes.nw2;
+    slopes.nw2 = 1.0;
+    slow_flow<double, double>(slopes, u1, v1, u2, v2, slope);
+    for (int row = 0; row < 4; ++row) j(row, 4 + i) = (slope[std::size_t(row)] - value[std::size_t(row)] * nw2_slope) / cp.nw2.v;
   }
   const double g1 = cp.g1.v, g2 = cp.g2.v, g3 = cp.g3.v, g4 = cp.g4.v, d1 = cp.damping1.v, d2 = cp.damping2.v, scale = 1.0 / cp.nw2.v;
   const double a = u1 * u1 + v1 * v1, b = u2 * u2 + v2 * v2;

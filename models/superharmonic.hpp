@@ -42,6 +42,12 @@ struct SlowFlowCoefficients {
 template <class S>
 SlowFlowCoefficients<S> slow_flow_coefficients(const StayParameters<S>& p, const StayModel<S>& model, int order);
 
+/// What of them only the cable decides. Load F2 = U (load_w2 w^2 + load), parametric part beta2 = U beta.
+template <class S>
+struct CableNumbers {
+  S w1, w2, g1, g2, g3, g4, load_w2, load, beta;
+};
+
 /// The field with x and the coefficients in scalars whose product is R.
 template <class R, class S>
 void slow_flow(const SlowFlowCoefficients<S>& c, const R& u1, const R& v1, const R& u2, const R& v2, std::span<R> r) {
@@ -77,7 +83,12 @@ class SuperharmonicModel {
   SuperharmonicOptions options_;
   std::vector<Lens> lenses_;
   StayModel<double> model_;
+  CableNumbers<double> cable_;
   bool cable_moves_ = false;
+  struct Moves {
+    bool z1, z2, U, w;
+  };
+  std::vector<Moves> moves_;  // what each lens turns, where none moves the cable
 };
 
 /// Amplitudes and phases of a state: what a person reads.
@@ -107,29 +118,45 @@ class SuperharmonicFlow : public DualProblem<SuperharmonicModel> {
 // ---------------------------------------------------------------------------------------------------------------------------
 
 template <class S>
-SlowFlowCoefficients<S> slow_flow_coefficients(const StayParameters<S>& p, const StayModel<S>& model, int order) {
+CableNumbers<S> cable_numbers(const Cable<S>& cable, const StayModel<S>& model) {
   using std::cos;
+  using std::sin;
   const auto& k = model.coefficients;
-  const S w = p.omega, w1 = model.modes.omega1, w2 = model.modes.omega2, n(static_cast<double>(order));
-  const S L2 = p.cable.chord_length * p.cable.chord_length, K = stiffness_rate(p.cable), KL2 = K / L2;
+  const S K = stiffness_rate(cable), KL2 = K / (cable.chord_length * cable.chord_length), theta = cable.inclination_deg * (pi / 180.0);
+  return {model.modes.omega1,
+          model.modes.omega2,
+          KL2 * k.G1 * 0.75,
+          KL2 * k.G2 * 0.25,
+          KL2 * k.G3 * 0.25,
+          KL2 * k.G4 * 0.75,
+          k.a2 * sin(theta),
+          -(k.a2 * model.shape.sag_ratio * 16.0 * K * cos(theta)),
+          K * 0.5 / cable.chord_length * cos(theta) * k.c2};
+}
+
+/// z1, z2: damping ratios, U: support amplitude, w: frequency. T: double where no lens moves the cable, else S.
+template <class S, class T>
+SlowFlowCoefficients<S> slow_flow_coefficients(const CableNumbers<T>& k, const S& z1, const S& z2, const S& U, const S& w, int order) {
+  const double n = order;
   SlowFlowCoefficients<S> c;
-  c.nw2 = n * w * 2.0;
-  c.damping1 = p.damping_out_of_plane * w1 * c.nw2;
-  c.damping2 = p.damping_in_plane * w2 * c.nw2;
-  c.g1 = KL2 * k.G1 * 0.75;
-  c.g2 = KL2 * k.G2 * 0.25;
-  c.g3 = KL2 * k.G3 * 0.25;
-  c.g4 = KL2 * k.G4 * 0.75;
+  c.nw2 = w * (2.0 * n);
+  c.damping1 = z1 * k.w1 * c.nw2;
+  c.damping2 = z2 * k.w2 * c.nw2;
+  c.g1 = S(k.g1);
+  c.g2 = S(k.g2);
+  c.g3 = S(k.g3);
+  c.g4 = S(k.g4);
   // Z0 = F2 (x - i y) / (x^2 + y^2)
-  const S x = w2 * w2 - w * w, y = p.damping_in_plane * w2 * w * 2.0, scale = in_plane_load(p, model) / (x * x + y * y);
+  const S w_squared = w * w, x = k.w2 * k.w2 - w_squared, y = z2 * k.w2 * w * 2.0;
+  const S scale = U * (w_squared * k.load_w2 + k.load) / (x * x + y * y);
   c.Z0_re = scale * x;
   c.Z0_im = -(scale * y);
-  const S Z0Z0 = c.Z0_re * c.Z0_re + c.Z0_im * c.Z0_im, nw = n * w;
-  c.detuning1 = w1 * w1 - nw * nw + c.g2 * Z0Z0 * 2.0;
-  c.detuning2 = w2 * w2 - nw * nw + c.g4 * Z0Z0 * 2.0;
+  const S Z0Z0 = c.Z0_re * c.Z0_re + c.Z0_im * c.Z0_im, nw_squared = w_squared * (n * n);
+  c.detuning1 = k.w1 * k.w1 - nw_squared + Z0Z0 * k.g2 * 2.0;
+  c.detuning2 = k.w2 * k.w2 - nw_squared + Z0Z0 * k.g4 * 2.0;
   c.load_re = c.load_im = S(0.0);
   if (order == 2) {
-    const S beta2 = K * 0.5 * p.support_amplitude / p.cable.chord_length * cos(p.cable.inclination_deg * (pi / 180.0)) * k.c2;
+    const S beta2 = U * k.beta;
     c.load_re = beta2 * c.Z0_re;
     c.load_im = beta2 * c.Z0_im;
   } else if (order == 3) {
@@ -141,22 +168,26 @@ SlowFlowCoefficients<S> slow_flow_coefficients(const StayParameters<S>& p, const
 }
 
 template <class S>
+SlowFlowCoefficients<S> slow_flow_coefficients(const StayParameters<S>& p, const StayModel<S>& model, int order) {
+  return slow_flow_coefficients<S, S>(cable_numbers(p.cable, model), p.damping_out_of_plane, p.damping_in_plane, p.support_amplitude, p.omega, order);
+}
+
+template <class S>
 SlowFlowCoefficients<S> SuperharmonicModel::coefficients(std::span<const S> p) const {
-  StayParameters<S> record = promote<S>(stay_);
-  for (std::size_t i = 0; i < lenses_.size(); ++i) lenses_[i].set(record, p[i]);
-  if (cable_moves_) return slow_flow_coefficients(record, stay_model(record.cable, options_.coefficients), options_.order);
-  // Only numbers that leave statics and modes alone: promote what the constructor computed.
-  StayModel<S> m;
-  m.shape = {S(model_.shape.sag), S(model_.shape.sag_ratio), S(model_.shape.irvine_lambda2)};
-  m.modes = {S(model_.modes.frequency_number), S(model_.modes.omega1), S(model_.modes.omega2), S(model_.modes.shape_denominator)};
-  const auto& k = model_.coefficients;
-  m.coefficients.a2 = S(k.a2);
-  m.coefficients.c2 = S(k.c2);
-  m.coefficients.G1 = S(k.G1);
-  m.coefficients.G2 = S(k.G2);
-  m.coefficients.G3 = S(k.G3);
-  m.coefficients.G4 = S(k.G4);
-  return slow_flow_coefficients(record, m, options_.order);
+  if (cable_moves_) {
+    StayParameters<S> record = promote<S>(stay_);
+    for (std::size_t i = 0; i < lenses_.size(); ++i) lenses_[i].set(record, p[i]);
+    return slow_flow_coefficients(record, stay_model(record.cable, options_.coefficients), options_.order);
+  }
+  // Only numbers that leave statics and modes alone: what the constructor computed holds.
+  S z1(stay_.damping_out_of_plane), z2(stay_.damping_in_plane), U(stay_.support_amplitude), w(stay_.omega);
+  for (std::size_t i = 0; i < lenses_.size(); ++i) {
+    if (moves_[i].z1) z1 = p[i];
+    if (moves_[i].z2) z2 = p[i];
+    if (moves_[i].U) U = p[i];
+    if (moves_[i].w) w = p[i];
+  }
+  return slow_flow_coefficients<S, double>(cable_, z1, z2, U, w, options_.order);
 }
 
 }  // namespace whirl::models

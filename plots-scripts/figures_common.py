@@ -75,10 +75,16 @@ def study_words(result, kind_words, varied=None, damping=True):
         words.append(damping_words(a["damping.out_of_plane"], a["damping.in_plane"]))
     if varied != "omega" and "omega" in a:
         words.append(rf"$\omega$ = {a['omega']:g} rad/s")
+    words += [f"{key} = {value:g}" for key, value in model_parameters(result).items() if key not in (varied, a.get("second.parameter"))]
     words += [f"{a[key]} {noun}" for key, noun in (("model.terms", "terms"), ("cable.coefficients", "coefficients")) if key in a]
     if a.get("outcome") != "complete":
         words.append("partial result")
     return ", ".join(w.replace(" ", NB) for w in words)
+
+
+def model_parameters(result):
+    """Numbers of a system that the study file gives as expressions."""
+    return {key: float(value) for key, value in result.group("model/parameters").columns.items() if np.ndim(value) == 0}
 
 
 # --- page ------------------------------------------------------------------------------------------------------------------

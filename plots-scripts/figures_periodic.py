@@ -97,13 +97,13 @@ def harmonics(result):
     size = {k: max(largest(result, names, column(q, k)) for q in shown) for k in harmonics_of(first, shown[0])}
     chosen = sorted(sorted(size, key=size.get, reverse=True)[:HARMONICS])
     colours, keys = page_keys(result, names, [])
-    page = Page(7.4, 1.75 * len(chosen) + 0.3, "Harmonics of the exact motions", [sentence(result)], keys)
+    page = Page(7.4, 1.75 * len(chosen) + 0.3, "Amplitudes of the harmonics of the exact motions", [sentence(result)], keys)
     panels = page.subplots(len(chosen), len(shown), sharex=True)
     for row, k in zip(panels, chosen):
         for axes, q in zip(row, shown):
             for name in names:
                 draw_branch(axes, knots_of(result, name, [x, column(q, k)]), x, column(q, k), colours[name], 1.3)
-            axes.set_ylabel(label("mean" if k == 0 else rf"amplitude at {k:g}$\omega$", first.units[column(q, k)]))
+            axes.set_ylabel(label("mean" if k == 0 else rf"at {'' if k == 1 else f'{k:g}'}$\omega$", first.units[column(q, k)]))
             axes.grid(True, color="#ececec", linewidth=0.6)
             axes.set_axisbelow(True)
     for axes, q in zip(panels[0], shown):
@@ -131,7 +131,8 @@ def multipliers(result):
     if not names or "mu1_re" not in first.columns:
         return None
     x = parameter_of(result, first)
-    colours, keys = page_keys(result, names, [])
+    colours = {n: CYCLE[i % len(CYCLE)] for i, n in enumerate(names)}
+    keys = [line_key(n + period_words(result.group("branches").group(n)), color=colours[n], linewidth=1.6) for n in names]
     page = Page(7.4, 3.7, "Floquet multipliers over the period of each motion", [sentence(result)], keys)
     plane, size = page.subplots(1, 2)[0]
     turn = np.linspace(0, 2 * np.pi, 400)
@@ -147,7 +148,7 @@ def multipliers(result):
     plane.set(xlim=(-reach, reach), ylim=(-reach, reach), aspect="equal", xlabel=r"Re $\mu$", ylabel=r"Im $\mu$")
     plane.set_title("(a) all multipliers and the unit circle", loc="left")
     size.axhline(1.0, color=INK, linewidth=1.0)
-    size.set_yscale("log")
+    size.set_ylim(0, min(1.05 * max(np.max(np.abs(spectrum_of(result.group("branches").group(n)))) for n in names), 5.0))
     size.set_xlabel(label(SYMBOLS.get(x, x), first.units[x]))
     size.set_ylabel(r"largest $|\mu|$")
     size.set_title("(b) unstable above 1", loc="left")

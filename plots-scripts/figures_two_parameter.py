@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from figures_common import (BLUE, DASHES, GREEN, GREY, INK, PURPLE, SYMBOLS, VERMILLION, Page, Tag, label, letter,
+from figures_common import (BLUE, DASHES, GREEN, GREY, INK, ORANGE, PURPLE, SYMBOLS, VERMILLION, Page, Tag, label, letter, model_parameters,
                             line_key, marker_key, number, parameter_of, place_tags, study_words)
 from result_file import Group
 
@@ -21,6 +21,7 @@ CURVES = {
     "BP": (PURPLE, ("solid", "dotted"), "BP branch points"),
     "LP": (VERMILLION, ("dashed",), "LP folds"),
     "HB": (GREEN, ("band",), "HB Hopf points"),
+    "RP": (ORANGE, ("solid",), "RP resonance peaks"),
     "PD": (PURPLE, ("solid", "dotted"), "PD period doublings"),
     "SB": (GREY, ("solid", "dotted"), "SB half-period symmetry breaking"),
     "TR": (GREEN, ("dashed",), "TR torus points"),
@@ -30,7 +31,8 @@ CURVES = {
 POINTS = {
     "DP": ("D", 5.0, "DP degenerate pitchfork"), "BT": ("s", 5.2, "BT Bogdanov–Takens"), "ZH": ("X", 6.5, "ZH zero-Hopf"),
     "R1": ("s", 5.2, "R1 resonance 1:1"), "R2": ("s", 5.2, "R2 resonance 1:2"), "R3": ("h", 6.0, "R3 resonance 1:3"),
-    "R4": ("p", 6.0, "R4 resonance 1:4"), "GH": ("h", 6.5, "GH generalised Hopf"), "CP": ("*", 8.5, "CP cusp"), "threshold": ("o", 5.5, "threshold of whirling"),
+    "R4": ("p", 6.0, "R4 resonance 1:4"), "GH": ("h", 6.5, "GH generalised Hopf"),
+    "HH": ("8", 6.5, "HH double Hopf"), "CP": ("*", 8.5, "CP cusp"), "threshold": ("o", 5.5, "threshold of whirling"),
     "MIN": ("v", 3.6, "minimum"), "MAX": ("^", 3.6, "maximum"),
 }
 QUIET = ("MIN", "MAX")      # marked, not named
@@ -150,7 +152,7 @@ def crossing(xy, coefficient, place):
 def chart(result, curves, points, parameters, units, scale):
     words = f"{len(curves)} curve{'s' if len(curves) > 1 else ''}"
     threshold = next((p for p in points if p.kind == "threshold"), None)
-    study_value = result.group("study").attributes.get(parameters[1])
+    study_value = result.group("study").attributes.get(parameters[1], model_parameters(result).get(parameters[1]))
     symbols = [SYMBOLS.get(p, p) for p in parameters]
     views = [outer_limits(curves, points, study_value, scale)]
     if threshold:
@@ -176,10 +178,11 @@ def chart(result, curves, points, parameters, units, scale):
 
 
 def title(curves, symbols):
-    nouns = {"WH": "whirling", "BP": "branch", "LP": "fold", "HB": "Hopf", "PD": "period-doubling", "SB": "symmetry-breaking", "TR": "torus"}
+    nouns = {"WH": "whirling", "BP": "branch", "LP": "fold", "HB": "Hopf", "PD": "period-doubling", "SB": "symmetry-breaking", "TR": "torus",
+             "RP": "peak"}
     words = [nouns[k] for k in CURVES if any(c.kind == k for c in curves)]
     joined = " and ".join(filter(None, (", ".join(words[:-1]), words[-1])))
-    return f"{joined[0].upper()}{joined[1:]} points in the plane of {symbols[0]} and {symbols[1]}, two-parameter study"
+    return f"{joined[0].upper()}{joined[1:]} points in the plane of {symbols[0]} and {symbols[1]}"
 
 
 def study_sentence(result, words, parameters):
@@ -187,7 +190,7 @@ def study_sentence(result, words, parameters):
     fixed = {key: value for key, value in result.group("study").attributes.items() if key not in parameters}
     for key, symbol in (("damping.out_of_plane", r"$\zeta_1$"), ("damping.in_plane", r"$\zeta_2$")):
         words += f", {symbol} = {fixed[key]:g}" if key in fixed else ""
-    return study_words(Group(groups={"study": Group("/study", fixed)}), words, damping=False)
+    return study_words(Group(groups={"study": Group("/study", fixed), "model": result.group("model")}), words, damping=False)
 
 
 def outer_limits(curves, points, study_value, scale):
@@ -235,7 +238,7 @@ def chart_keys(curves, points, symbol, unit, study_value):
         drawn = {line for c in curves if c.kind == kind for line, _, _ in c.pieces()}
         for line in lines:
             if line in drawn:
-                which = {"solid": ", supercritical", "dotted": ", subcritical"}.get(line, "")
+                which = {"solid": ", supercritical", "dotted": ", subcritical"}.get(line, "") if len(lines) > 1 else ""
                 keys.append(line_key(words + which, color=colour, **LINES[line]))
     for kind, (marker, size, words) in POINTS.items():
         if any(p.kind == kind for p in points):

@@ -66,8 +66,13 @@ void explore(const Problem& f, const Setup& s, Network& net, const std::vector<d
   for (const double p : deflate_at) {
     std::vector<Vector> known;
     for (const auto& [branch, u] : net.solutions_at(p)) known.push_back(u);
-    std::vector<Vector> starts = known;
-    for (auto& u : starts) u.head(f.size()) *= 1.1;
+    std::vector<Vector> starts;
+    for (const auto& u : known)
+      for (const double part : {0.3, -0.3, 1.0, -1.0, 3.0, -3.0})
+        for (int i = 0; i < f.size(); ++i) {
+          starts.push_back(u);
+          starts.back()[i] += part * std::max(1.0, std::abs(u[i]));
+        }
     for (const auto& b : net.branches())  // whatever the branches pass through, seen at p
       for (int i = 0; i < b.points(); i += std::max(1, b.points() / 5)) {
         starts.push_back(b.u(i));

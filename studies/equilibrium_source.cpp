@@ -167,7 +167,12 @@ class ExpressionSource : public EquilibriumSource {
     }
     return all;
   }
-  void write(ResultFile&) const override {}
+  void write(ResultFile& file) const override {
+    for (const auto& p : model_.parameters) file.scalar("/model/parameters", p.name, p.value, "-", "parameter, as the study file gives it");
+    std::vector<std::string> equations;
+    for (std::size_t i = 0; i < model_.rhs.size(); ++i) equations.push_back(model_.variables[i] + "' = " + model_.rhs[i]);
+    file.attribute("/model", "equations", equations);
+  }
 
  private:
   Indices indices(const Amplitude& a) const {

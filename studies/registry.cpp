@@ -3,7 +3,11 @@
 #include <fmt/format.h>
 
 #include "studies/basins_study.hpp"
+#include "studies/compare_study.hpp"
 #include "studies/continuation_study.hpp"
+#include "studies/guy_modes_study.hpp"
+#include "studies/guy_statics_study.hpp"
+#include "studies/guy_stiffness_study.hpp"
 #include "studies/integrate_study.hpp"
 #include "studies/mode_convergence_study.hpp"
 #include "studies/modes_study.hpp"
@@ -16,8 +20,9 @@ namespace whirl::studies {
 
 const std::vector<StudyKind>& study_kinds() {
   static const std::vector<StudyKind> kinds = {
-      superharmonic_study(), continuation_study(), two_parameter_study(), periodic_study(),         slow_flow_study(),
-      integrate_study(),     basins_study(),       modes_study(),         mode_convergence_study(),
+      superharmonic_study(), continuation_study(), two_parameter_study(),    periodic_study(),    slow_flow_study(),
+      compare_study(),       integrate_study(),    basins_study(),           guy_statics_study(), guy_modes_study(),
+      guy_stiffness_study(), modes_study(),        mode_convergence_study(),
   };
   return kinds;
 }

@@ -165,6 +165,28 @@ def mode_convergence(path):
                                      "peak": 1.1 - 0.02 / n, "peak_omega": 1.61 + 0.001 * n})
 
 
+def continuation(path):
+    """Rest points of a pitchfork in (x, y) with an isola in x alone; mu varies, lambda is fixed."""
+    with h5py.File(path, "w") as file:
+        file.require_group("study").attrs.update({"kind": "continuation", "outcome": "complete", "continuation.parameter": "mu"})
+        table(file, "/model/parameters", {"mu": [0.5], "lambda": [1.25]})
+        for name in ("mu", "lambda"):
+            del file[f"model/parameters/{name}"]
+            file[f"model/parameters/{name}"] = 1.25
+        mu, angle = np.linspace(-1, 1, 21), np.linspace(0, 2 * np.pi, 30)
+        for name, p, x, unstable in (("B1", mu, 0 * mu, mu > 0), ("B2", mu[10:], np.sqrt(mu[10:]), mu[10:] < 0),
+                                     ("B3", 0.3 * np.cos(angle), 2 + 0.4 * np.sin(angle), np.sin(angle) < 0)):
+            group = table(file, f"/branches/{name}", {"mu": p, "x": x, "y": 0 * x, "n_unstable": unstable,
+                                                      "arclength": np.arange(len(p), dtype=float)}, units="-")
+            group["mu"].attrs["description"] = "continuation parameter"
+            for column in ("x", "y"):
+                group[column].attrs["description"] = "variable"
+            group.attrs["isola"] = float(name == "B3")
+        table(file, "/special_points", {"branch": ["B1", "B3"], "label": ["BP1", "LP1"], "type": ["BP", "LP"], "subtype": ["PF", ""],
+                                        "mu": [0.0, 0.3], "x": [0.0, 2.0], "y": [0.0, 0.0], "arclength": [10.0, 0.0],
+                                        "unstable_before": [0, 0], "unstable_after": [1, 1]}, units="-")
+
+
 def slow_flow(path):
     """In plane from 1.9 to 2.2 rad/s; a coupled motion of period 2T from 1.95 on; settled motions of both kinds at 2.1."""
     with h5py.File(path, "w") as file:
@@ -271,6 +293,63 @@ def basin_map(path):
                                        "q1'": np.zeros(43), "q2'": np.zeros(43)})
 
 
+def guy(file, kind):
+    file.require_group("study").attrs.update({"kind": kind, "outcome": "complete", "guy.horizontal_span": 90.0, "guy.rise": 120.0,
+                                              "condition.ice_mass_per_length": 1.5, "condition.temperature_change": -15.0})
+    for name, value in {"horizontal_tension": 4.5e4, "r": 0.05, "irvine_lambda2": 3.1, "modulus": 1.4e5, "taut_modulus": 1.7e5}.items():
+        file[f"guy/{name}"] = value
+
+
+def guy_statics(path):
+    with h5py.File(path, "w") as file:
+        guy(file, "guy-statics")
+        d = np.linspace(-0.5, 0.5, 21)
+        for name, factor in (("exact", 1.0), ("first_order", 0.99)):
+            table(file, f"/curve/{name}", {"displacement": d, "horizontal_tension": factor * (4.5e4 + 1.4e5 * d + 5e4 * d**2), "modulus": factor * (1.4e5 + 1e5 * d)})
+        for k, t in enumerate((0.0, 30.0)):
+            part = table(file, f"/groups/direction{k}", {"displacement": d, "reaction": 2e5 * d, "reaction_axial": 1.98e5 * d, "reaction_across": k * 1e4 * d**2})
+            part.attrs.update({"direction_deg": t, "azimuths_deg": [0.0, 120.0, 240.0], "tangent": 2e5, "tangent_axial": 1.98e5})
+        s = np.linspace(0, 1, 7)
+        shape = {"x": 90 * s, "y": 120 * s - 4 * s * (1 - s)}
+        table(file, "/static_curve", shape)
+        for name in ("funicular", "hung"):
+            table(file, f"/lumped/{name}", shape).attrs["horizontal_tension"] = 4.5e4
+
+
+def guy_modes(path):
+    with h5py.File(path, "w") as file:
+        guy(file, "guy-modes")
+        s, modes = np.linspace(0, 1, 41), np.arange(1, 4)
+        table(file, "/modes/transverse", {"mode": modes, "omega": 2.5 * modes, "omega_string": 2.6 * modes})
+        table(file, "/modes/transverse_shapes", {"sigma": s} | {f"{n}_{i}": np.sin(i * np.pi * s) for i in modes for n in ("guy", "string")})
+        for plane, names in (("in_plane", ("normal", "tangential")), ("out_of_plane", ("z",))):
+            table(file, f"/modes/{plane}", {"mode": modes, "omega": 2.7 * modes})
+            table(file, f"/modes/{plane}_shapes", {"sigma": s} | {f"{n}_{i}": np.sin(i * np.pi * s) for i in modes for n in names})
+        H = np.geomspace(1e4, 1e6, 9)
+        table(file, "/scan", {"horizontal_tension": H, "irvine_lambda2": 1e13 / H**2.5, "omega_string": np.sqrt(H)} |
+              {f"{n}_{i}": i * np.sqrt(H) for i in modes for n in ("in_plane", "out_of_plane")})
+
+
+def guy_stiffness(path):
+    with h5py.File(path, "w") as file:
+        guy(file, "guy-stiffness")
+        x = np.linspace(0.02, 4, 200)
+        K = 1e5 * (1 - x / (1.5**2 - x**2 + 0.02j * x))
+        columns = {"omega_ratio": x, "full_re": K.real, "full_im": np.abs(K.imag) + 1.0}
+        columns |= {"classical_re": 1.1 * K.real, "classical_im": -K.imag, "error_classical": 0.1 + 0 * x}
+        table(file, "/stiffness/horizontal", columns).attrs.update({"static": 1e5, "taut": 1.7e5, "damping_rate": 0.01})
+        table(file, "/stiffness/matrix", {"omega_ratio": x} | {f"{n}_{p}": np.abs(K) for n in ("xy", "yy", "zz") for p in ("re", "im")})
+        level = table(file, "/stiffness/level", {"omega_ratio": x} | {f"{n}_{p}": np.abs(K) for n in ("XX", "YY", "ZZ") for p in ("re", "im")})
+        level.attrs["azimuths_deg"] = [0.0, 120.0, 240.0]
+        table(file, "/poles_and_zeros", {"omega_ratio": [1.2, 1.5], "direction": ["horizontal"] * 2, "type": ["zero", "pole"]})
+        n = np.arange(4.0, 30.0, 2.0)
+        table(file, "/convergence", {"degree": n, "error_galerkin": 10.0**-n, "error_collocation": 10.0 ** (2 - n)}).attrs.update(
+            {"omega": 9.4, "reference_degree": 100.0})
+        X = np.linspace(0.1, 12, 300)
+        table(file, "/longitudinal", {"X": X, "displacement": np.tan(X) / X, "force": X / np.tan(X), "displacement_damped": np.abs(np.tan(X) / X),
+                                      "force_damped": np.abs(X / np.tan(X))}).attrs.update({"alpha": 0.8, "wave_speed": 2000.0})
+
+
 # --- helpers ---------------------------------------------------------------------------------------------------------------
 
 def plot(*arguments):
@@ -337,6 +416,22 @@ def test_other_kind_gets_bifurcation_diagram(folder):
     done = plot(path, "--format", "png")
     check(done.returncode == 0 and os.listdir(folder).count("other-branches.png") == 1, done.stderr)
     check_picture(os.path.join(folder, "other-branches.png"))
+
+
+def test_continuation_diagram(folder):
+    """A variable that never moves gets no panel; isolas and fixed parameters stand in the caption."""
+    from figures_continuation import panel_columns, words
+    from figures_common import study_words
+    from result_file import read
+    path = os.path.join(folder, "rest.h5")
+    continuation(path)
+    done = plot(path, "--format", "png")
+    check(done.returncode == 0 and done.stderr == "" and os.listdir(folder).count("rest-branches.png") == 1, done.stderr)
+    check_picture(os.path.join(folder, "rest-branches.png"))
+    result, names = read(path), ["B1", "B2", "B3"]
+    check(panel_columns(result, names) == ["x"], str(panel_columns(result, names)))
+    caption = study_words(result, words(result, names)).replace("\u00a0", " ")
+    check(caption == "3 branches (B3 isola), lambda = 1.25", caption)
 
 
 def test_stability_segments(folder):
@@ -508,6 +603,30 @@ def test_basins_reading(folder):
     check(cells[10, 15] == 3 and cells[10, 28] == 1 and cells[10, 2] == 2 and cells[20, 30] == -1 and cells[0, 0] == 0, str(cells))
     check(depth(np.ones((5, 7), dtype=bool)).max() == 3, "depth of a block")
     check(len(Points(read(path).group("basins/points"), 2).column("q1")) == 2, "points")
+
+
+def test_guys(folder):
+    for kind, make, names in (("statics", guy_statics, ("force", "groups", "lumped")), ("modes", guy_modes, ("transverse", "full", "scan")),
+                              ("stiffness", guy_stiffness, ("modulus", "matrix", "convergence", "longitudinal"))):
+        path = os.path.join(folder, f"{kind}.h5")
+        make(path)
+        done = plot(path, "--format", "png")
+        check(done.returncode == 0 and done.stderr == "", done.stderr)
+        for name in names:
+            check_picture(os.path.join(folder, f"{kind}-{name}.png"))
+    with h5py.File(path, "r+") as file:  # undamped, and killed early: the rest is drawn
+        for name in ("full_im", "classical_im"):
+            file[f"stiffness/horizontal/{name}"][:] = 0.0
+        for name in ("stiffness/matrix", "convergence", "longitudinal"):
+            del file[name]
+    done = plot(path, "--format", "png")
+    check(done.returncode == 0 and done.stderr == "" and done.stdout.count("\n") == 1, done.stderr)
+
+
+def test_jumps_through_infinity_are_cut(folder):
+    import figures_guy_stiffness
+    x, y = figures_guy_stiffness.broken(np.arange(6.0), [1.0, 5.0, -5.0, -1.0, 0.5, 1.0], 8.0)
+    check(len(x) == 7 and np.isnan(x[2]) and np.isnan(y[2]) and np.sum(np.isnan(y)) == 1, f"{x} {y}")
 
 
 def test_truncated(folder):

@@ -2,6 +2,7 @@
 #include <benchmark/benchmark.h>
 
 #include "continuation/network.hpp"
+#include "continuation/two_parameter.hpp"
 #include "models/closed_forms.hpp"
 #include "models/steady_motion.hpp"
 #include "models/superharmonic.hpp"
@@ -61,6 +62,61 @@ void whirling_branch(benchmark::State& state) {  // 3 folds, 2 Hopf points, 1 br
   report(state, b);
 }
 BENCHMARK(whirling_branch)->Arg(1)->Arg(0)->Unit(benchmark::kMicrosecond);
+
+void threshold_chart(benchmark::State& state) {  // the curve of whirling points in (omega, U), with its codimension-2 points
+  Oresund o;
+  const SuperharmonicFlow flow2(stay, {.order = 2}, {Lens("omega"), Lens("support_amplitude")});
+  TwoParameterOptions t;
+  t.range1[0] = 1.2;
+  t.range1[1] = 2.8;
+  t.range2[0] = 0.05;
+  t.range2[1] = 0.8;
+  DefiningCurve c;
+  for (auto _ : state) c = follow(flow2, o.planar.special.front(), 0.5, t);
+  state.counters["points"] = static_cast<double>(c.u.cols());
+}
+BENCHMARK(threshold_chart)->Unit(benchmark::kMillisecond);
+
+// A dense problem of 200 unknowns, x' = K x + p e^x with all neighbours coupled: a point against the LU and the eigenvalues it cannot do without.
+struct Dense200 {
+  static constexpr std::size_t n = 200;
+  template <class S>
+  void residual(std::span<const S> u, std::span<S> r) const {
+    using std::exp;
+    S mean(0.0);
+    for (std::size_t i = 0; i < n; ++i) mean += u[i] * (1.0 / n);
+    for (std::size_t i = 0; i < n; ++i) {
+      const S left = i > 0 ? u[i - 1] : S(0.0), right = i + 1 < n ? u[i + 1] : S(0.0);
+      r[i] = left - 2.0 * u[i] + right + 0.01 * mean + 1e-4 * u[n] * S(exp(u[i]));
+    }
+  }
+};
+
+void dense_200_walk(benchmark::State& state) {
+  const DualProblem<Dense200> f({}, 200, 1, true);
+  WalkOptions o;
+  o.lower = 0.0;
+  o.upper = 0.2;
+  Branch b;
+  for (auto _ : state) b = Walker(f, o).walk(Vector::Zero(201));
+  report(state, b);
+}
+BENCHMARK(dense_200_walk)->Unit(benchmark::kMillisecond);
+
+void dense_200_part(benchmark::State& state) {  // 0: Jacobian, 1: LU, 2: eigenvalues
+  const DualProblem<Dense200> f({}, 200, 1, true);
+  const Vector u = Vector::Constant(201, 0.1);
+  Matrix j(200, 201);
+  Vector r(200);
+  f.linearise(u, r, j);
+  const Matrix a = j.leftCols(200);
+  for (auto _ : state) {
+    if (state.range(0) == 0) f.linearise(u, r, j);
+    if (state.range(0) == 1) benchmark::DoNotOptimize(Eigen::PartialPivLU<Matrix>(a).matrixLU().data());
+    if (state.range(0) == 2) benchmark::DoNotOptimize(Eigen::EigenSolver<Matrix>(a, false).eigenvalues().data());
+  }
+}
+BENCHMARK(dense_200_part)->Arg(0)->Arg(1)->Arg(2)->Unit(benchmark::kMillisecond);
 
 void jacobian(benchmark::State& state) {
   Oresund o;

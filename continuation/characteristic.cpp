@@ -1,0 +1,107 @@
+#include "continuation/characteristic.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace whirl::continuation {
+namespace {
+
+constexpr int most_steps = 10;
+constexpr double settled = 1e-11;  // of a step, relative: the next one is its square
+
+}  // namespace
+
+void quadratic_roots(double p, double q, std::complex<double>& z0, std::complex<double>& z1) {
+  const double half = -0.5 * p, discriminant = half * half - q;
+  if (discriminant < 0.0) {
+    z0 = {half, std::sqrt(-discriminant)};
+    z1 = std::conj(z0);
+    return;
+  }
+  const double large = half + std::copysign(std::sqrt(discriminant), half);
+  z0 = large;
+  z1 = large == 0.0 ? 0.0 : q / large;
+}
+
+bool RealFactors::eigenvalues(const Matrix& a, std::complex<double>* z) {
+  known_ = known_ && (a.rows() == 3 ? three(a, z) : four(a, z));
+  return known_;
+}
+
+void RealFactors::restart(const std::complex<double>* z, int m) {
+  // A complex pair goes together; without one the two lowest.
+  int first = 0;
+  while (first < m && z[first].imag() == 0.0) ++first;
+  if (first < m) {
+    p_ = -2.0 * z[first].real();
+    q_ = std::norm(z[first]);
+    for (int i = 0; i < m; ++i)
+      if (z[i].imag() == 0.0) t_ = z[i].real();
+  } else {
+    double low = std::numeric_limits<double>::infinity(), next = low, high = -low;
+    for (int i = 0; i < m; ++i) {
+      const double x = z[i].real();
+      if (x < low) {
+        next = low;
+        low = x;
+      } else {
+        next = std::min(next, x);
+      }
+      high = std::max(high, x);
+    }
+    p_ = -(low + next);
+    q_ = low * next;
+    t_ = high;
+  }
+  known_ = std::isfinite(p_) && std::isfinite(q_) && std::isfinite(t_);
+}
+
+bool RealFactors::three(const Matrix& a, std::complex<double>* z) {
+  const double m00 = a(1, 1) * a(2, 2) - a(1, 2) * a(2, 1), m01 = a(1, 0) * a(2, 2) - a(1, 2) * a(2, 0), m02 = a(1, 0) * a(2, 1) - a(1, 1) * a(2, 0);
+  const double c2 = -(a(0, 0) + a(1, 1) + a(2, 2));
+  const double c1 = m00 + a(0, 0) * a(2, 2) - a(0, 2) * a(2, 0) + a(0, 0) * a(1, 1) - a(0, 1) * a(1, 0);
+  const double c0 = -(a(0, 0) * m00 - a(0, 1) * m01 + a(0, 2) * m02), size = a.norm();
+  for (int i = 0; i < most_steps; ++i) {
+    const double p = c2 + t_, q = c1 + t_ * p, f = c0 + t_ * q, slope = q + t_ * (p + t_);
+    const double step = f / slope;
+    t_ -= step;
+    if (!std::isfinite(step)) return false;
+    if (std::abs(step) > settled * size) continue;
+    z[0] = t_;
+    quadratic_roots(c2 + t_, c1 + t_ * (c2 + t_), z[1], z[2]);
+    return true;
+  }
+  return false;
+}
+
+bool RealFactors::four(const Matrix& a, std::complex<double>* z) {
+  // Minors of the first two rows and of the last two.
+  const double s0 = a(0, 0) * a(1, 1) - a(1, 0) * a(0, 1), s1 = a(0, 0) * a(1, 2) - a(1, 0) * a(0, 2), s2 = a(0, 0) * a(1, 3) - a(1, 0) * a(0, 3),
+               s3 = a(0, 1) * a(1, 2) - a(1, 1) * a(0, 2), s4 = a(0, 1) * a(1, 3) - a(1, 1) * a(0, 3), s5 = a(0, 2) * a(1, 3) - a(1, 2) * a(0, 3);
+  const double k5 = a(2, 2) * a(3, 3) - a(3, 2) * a(2, 3), k4 = a(2, 1) * a(3, 3) - a(3, 1) * a(2, 3), k3 = a(2, 1) * a(3, 2) - a(3, 1) * a(2, 2),
+               k2 = a(2, 0) * a(3, 3) - a(3, 0) * a(2, 3), k1 = a(2, 0) * a(3, 2) - a(3, 0) * a(2, 2), k0 = a(2, 0) * a(3, 1) - a(3, 0) * a(2, 1);
+  const double c3 = -(a(0, 0) + a(1, 1) + a(2, 2) + a(3, 3));
+  const double c2 =
+      s0 + k5 + (a(0, 0) + a(1, 1)) * (a(2, 2) + a(3, 3)) - a(0, 2) * a(2, 0) - a(0, 3) * a(3, 0) - a(1, 2) * a(2, 1) - a(1, 3) * a(3, 1);
+  const double c1 = -(a(1, 1) * k5 - a(1, 2) * k4 + a(1, 3) * k3 + a(0, 0) * k5 - a(0, 2) * k2 + a(0, 3) * k1 + a(3, 0) * s4 - a(3, 1) * s2 +
+                      a(3, 3) * s0 + a(2, 0) * s3 - a(2, 1) * s1 + a(2, 2) * s0);
+  const double c0 = s0 * k5 - s1 * k4 + s2 * k3 + s3 * k2 - s4 * k1 + s5 * k0, size = a.norm();
+  for (int i = 0; i < most_steps; ++i) {  // Bairstow: the remainder R1 z + R0 of the division by z^2 + p z + q vanishes
+    const double r = c3 - p_, s = c2 - q_ - p_ * r, R1 = c1 - p_ * s - q_ * r, R0 = c0 - q_ * s;
+    const double R1_p = q_ - s - p_ * (p_ - r), R1_q = p_ - r, R0_p = -q_ * (p_ - r), R0_q = q_ - s;
+    const double inverse = 1.0 / (R1_p * R0_q - R1_q * R0_p);
+    const double dp = (R1 * R0_q - R0 * R1_q) * inverse, dq = (R0 * R1_p - R1 * R0_p) * inverse;
+    if (!std::isfinite(dp) || !std::isfinite(dq)) return false;
+    p_ -= dp;
+    q_ -= dq;
+    if (std::abs(dp) > settled * size || std::abs(dq) > settled * size * size) continue;
+    const double r_end = c3 - p_;
+    quadratic_roots(p_, q_, z[0], z[1]);
+    quadratic_roots(r_end, c2 - q_ - p_ * r_end, z[2], z[3]);
+    return true;
+  }
+  return false;
+}
+
+}  // namespace whirl::continuation

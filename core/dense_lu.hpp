@@ -1,0 +1,35 @@
+#pragma once
+/// LU with partial pivoting, PA = LU: own kernels with the size known to the compiler up to 8, Eigen's blocked one above. No allocation after
+/// the first `compute` of a size.
+///
+///     DenseLu lu(5);
+///     lu.compute(a);
+///     lu.solve(b, x);                 // a x = b; b and x may be the same vector
+///     lu.solve_transposed(b, x);      // a' x = b
+
+#include <Eigen/LU>
+
+#include "core/problem.hpp"
+
+namespace whirl {
+
+class DenseLu {
+ public:
+  static constexpr int small = 8;
+
+  explicit DenseLu(Eigen::Index n = 0) : n_(static_cast<int>(n)), large_(n > small ? n : 0) {}
+
+  void compute(MatrixIn a);
+  void solve(In b, Out x) const;
+  void solve_transposed(In b, Out x) const;
+  bool negative_determinant() const;
+
+ private:
+  int n_;
+  double a_[small * small];  // L below the diagonal, U on and above, by columns; the diagonal holds reciprocals
+  int pivot_[small];         // row exchanged with row k at step k
+  bool odd_ = false;         // permutation
+  Eigen::PartialPivLU<Matrix> large_;
+};
+
+}  // namespace whirl

@@ -1,0 +1,222 @@
+#include "studies/guy_statics_study.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "models/guy/group.hpp"
+#include "models/guy/lumped.hpp"
+#include "models/guy/tangent.hpp"
+#include "studies/common_keys.hpp"
+#include "studies/guy_keys.hpp"
+
+namespace whirl::studies {
+namespace {
+
+using namespace models::guy;
+
+constexpr double degree = std::numbers::pi / 180.0;
+
+struct Setup {
+  GuyInput guy;
+  std::vector<double> curve;  // displacements of the mast's end away from the anchor
+  std::vector<double> azimuths, directions, displacements;
+  int masses = 0;
+};
+
+Schema schema() {
+  Schema s("guy-statics", "static state of a guy, force against displacement, groups of guys on a level, chains of lumped masses");
+  add_guy_keys(s);
+  s.add({.name = "curve.range",
+         .unit = "m",
+         .description = "displacements of the mast's end away from the anchor",
+         .default_value = std::vector<double>{-1.0, 1.0},
+         .min_items = 2,
+         .max_items = 2});
+  s.add({.name = "curve.points",
+         .description = "of the curve",
+         .default_value = std::int64_t{161},
+         .lower = 2,
+         .upper = 100000,
+         .closed_lower = true,
+         .closed_upper = true});
+  s.add({.name = "group.guys",
+         .description = "equal guys, equally spread, that hold one point of the mast; 0: none",
+         .default_value = std::int64_t{0},
+         .lower = 0,
+         .upper = 100,
+         .closed_lower = true,
+         .closed_upper = true});
+  s.add({.name = "group.azimuths_deg",
+         .unit = "deg",
+         .description = "or their azimuths from the mast to the anchors",
+         .default_value = std::vector<double>{},
+         .max_items = 100});
+  s.add({.name = "group.directions_deg",
+         .unit = "deg",
+         .description = "directions in which the point is moved",
+         .default_value = std::vector<double>{0.0},
+         .min_items = 1,
+         .max_items = 36});
+  s.add({.name = "group.range",
+         .unit = "m",
+         .description = "displacements of the point",
+         .default_value = std::vector<double>{-1.0, 1.0},
+         .min_items = 2,
+         .max_items = 2});
+  s.add({.name = "group.points",
+         .description = "of a curve",
+         .default_value = std::int64_t{81},
+         .lower = 2,
+         .upper = 100000,
+         .closed_lower = true,
+         .closed_upper = true});
+  s.add({.name = "lumped.masses",
+         .description = "masses of the chains; 0: none",
+         .default_value = std::int64_t{5},
+         .lower = 0,
+         .upper = 10000,
+         .closed_lower = true,
+         .closed_upper = true});
+  s.add({.name = "lumped.extra_weights",
+         .unit = "N",
+         .description = "hung on the masses of the hung chain, from the anchor up",
+         .default_value = std::vector<double>{},
+         .lower = 0.0,
+         .closed_lower = true});
+  return s;
+}
+
+Statics moved(const Statics& rest, double displacement) {
+  Guy g = rest.guy;
+  g.horizontal_span += displacement;
+  return solve(g, Known::unstressed_length, rest.unstressed_length, rest.form);
+}
+
+Group group_of(const Setup& s) {
+  Group group;
+  for (const double a : s.azimuths) group.push_back({s.guy.rest, a * degree});
+  return group;
+}
+
+Setup setup(const Configuration& c) {
+  Setup s;
+  s.guy = guy_of(c);
+  s.curve = grid_of(c, "curve.range", static_cast<int>(c.integer("curve.points")));
+  s.azimuths = c.numbers("group.azimuths_deg");
+  for (const double end : c.numbers("curve.range"))
+    blame(c, "curve.range", [&] { (void)moved(s.guy.exact, end), (void)moved(s.guy.first_order, end); });
+  const auto guys = c.integer("group.guys");
+  if (guys > 0 && !s.azimuths.empty()) throw c.error("group.guys", "is given beside group.azimuths_deg: give one of them");
+  for (int j = 0; j < guys; ++j) s.azimuths.push_back(360.0 * j / static_cast<double>(guys));
+  s.directions = c.numbers("group.directions_deg");
+  s.displacements = grid_of(c, "group.range", static_cast<int>(c.integer("group.points")));
+  if (!s.azimuths.empty())
+    for (const double t : s.directions)
+      for (const double d : c.numbers("group.range"))
+        blame(c, "group.range", [&] {
+          for (const auto terms : {GroupTerms::axial, GroupTerms::full_geometry}) (void)reaction(group_of(s), d, t * degree, terms);
+        });
+  s.masses = static_cast<int>(c.integer("lumped.masses"));
+  if (const auto n = c.numbers("lumped.extra_weights").size(); n > static_cast<std::size_t>(s.masses))
+    throw c.error("lumped.extra_weights", fmt::format("must hold at most as many values as lumped.masses, {}", s.masses));
+  return s;
+}
+
+std::vector<std::string> check(const Configuration& c) { return guy_warnings(setup(c).guy); }
+
+void write_curve(ResultFile& file, const Setup& s, const Statics& rest) {
+  std::vector<Statics> states;
+  for (const double d : s.curve) states.push_back(moved(rest, d));
+  const std::size_t n = states.size();
+  const bool exact = rest.form == Form::exact;
+  std::vector<Column> columns{column("displacement", "m", "of the mast's end, away from the anchor", n, [&](auto i) { return s.curve[i]; }),
+                              column("horizontal_tension", "N", "H", n, [&](auto i) { return states[i].horizontal_tension; }),
+                              column("lower_tension", "N", "at the anchor", n, [&](auto i) { return states[i].lower_tension; }),
+                              column("upper_tension", "N", "at the mast", n, [&](auto i) { return states[i].upper_tension; }),
+                              column("sag", "m", "largest distance from the chord", n, [&](auto i) { return states[i].sag; }),
+                              column("modulus", "N/m", "dH/dl", n, [&](auto i) { return horizontal_modulus(states[i]); })};
+  if (exact) {
+    columns.push_back(column("modulus_xy", "N/m", "horizontal force per vertical displacement", n, [&](auto i) { return tangent(states[i]).xy; }));
+    columns.push_back(column("modulus_yy", "N/m", "vertical force per vertical displacement", n, [&](auto i) { return tangent(states[i]).yy; }));
+    columns.push_back(column("modulus_zz", "N/m", "H/l", n, [&](auto i) { return tangent(states[i]).zz; }));
+  }
+  file.table(exact ? "/curve/exact" : "/curve/first_order", columns);
+}
+
+void write_group(ResultFile& file, const Setup& s, double direction) {
+  const Group group = group_of(s);
+  std::vector<Reaction> axial, full;
+  for (const double d : s.displacements) {
+    axial.push_back(reaction(group, d, direction * degree, GroupTerms::axial));
+    full.push_back(reaction(group, d, direction * degree, GroupTerms::full_geometry));
+  }
+  const std::size_t n = full.size();
+  const std::string name = fmt::format("/groups/direction{:g}", direction);
+  file.table(name, {column("displacement", "m", "of the held point", n, [&](auto i) { return s.displacements[i]; }),
+                    column("reaction", "N", "against the displacement, full geometry", n, [&](auto i) { return full[i].along; }),
+                    column("reaction_axial", "N", "spans only, without the transverse part", n, [&](auto i) { return axial[i].along; }),
+                    column("reaction_across", "N", "90 degrees counter-clockwise of the displacement", n, [&](auto i) { return full[i].across; }),
+                    column("largest_tension", "N", "of the guys' upper ends", n, [&](auto i) { return full[i].largest_tension; }),
+                    column("smallest_tension", "N", "of the guys' upper ends", n, [&](auto i) { return full[i].smallest_tension; })});
+  file.attribute(name, "direction_deg", direction);
+  file.attribute(name, "azimuths_deg", s.azimuths);
+  file.attribute(name, "tangent", group_modulus(group, direction * degree, GroupTerms::full_geometry));
+  file.attribute(name, "tangent_axial", group_modulus(group, direction * degree, GroupTerms::axial));
+}
+
+void write_polygon(ResultFile& file, const std::string& name, const Polygon& p) {
+  const std::size_t n = p.x.size();
+  file.table(
+      "/lumped/" + name,
+      {column("x", "m", "ends and masses, from the anchor", n, [&](auto i) { return p.x[i]; }),
+       column("y", "m", "ends and masses", n, [&](auto i) { return p.y[i]; }),
+       column("weight", "N", "of the mass; 0 at the ends", n, [&](auto i) { return i == 0 || i + 1 == n ? 0.0 : p.weight[i - 1]; }),
+       column("line_length", "m", "of the line above this point; 0 at the last", n, [&](auto i) { return i + 1 < n ? p.length[i] : 0.0; }),
+       column("line_tension", "N", "of the line above this point; 0 at the last", n, [&](auto i) { return i + 1 < n ? p.tension[i] : 0.0; }),
+       column("line_slope", "-", "dy/dx of the line above this point; 0 at the last", n, [&](auto i) { return i + 1 < n ? p.slope[i] : 0.0; })});
+  file.attribute("/lumped/" + name, "horizontal_tension", p.horizontal_tension);
+}
+
+void write_lumped(ResultFile& file, const Configuration& c, const Setup& s) {
+  if (s.masses == 0) return;
+  const Statics& rest = s.guy.first_order;
+  write_polygon(file, "funicular", funicular_polygon(rest, s.masses));
+  const double part = rest.length / (s.masses + 1);
+  std::vector<double> weights(static_cast<std::size_t>(s.masses), rest.guy.weight() * part);
+  const auto& extra = c.numbers("lumped.extra_weights");
+  for (std::size_t i = 0; i < extra.size(); ++i) weights[i] += extra[i];
+  write_polygon(file, "hung", hung_masses(rest.guy, std::vector(weights.size() + 1, part), weights));
+}
+
+ExitStatus run(const Configuration& c, RunContext& context) {
+  const Setup s = setup(c);
+  for (const auto& w : guy_warnings(s.guy)) context.warn(w);
+  ResultFile file(context.output);
+  write_study(file, c);
+  write_guy(file, s.guy);
+  write_curve(file, s, s.guy.first_order);
+  write_curve(file, s, s.guy.exact);
+  file.flush();
+  if (!s.azimuths.empty())
+    for (const double direction : s.directions) write_group(file, s, direction);
+  ExitStatus status = ExitStatus::ok;
+  std::vector<std::string> reasons{"all parts computed"};
+  try {
+    write_lumped(file, c, s);
+  } catch (const std::exception& e) {
+    context.warn(fmt::format("lumped masses: {}", e.what()));
+    reasons = {e.what()};
+    status = ExitStatus::numerical_failure;
+  }
+  if (context.json) fmt::print("{{\n  \"special_points\": [],\n  \"branches\": [],\n  \"guy\": {}\n}}\n", guy_json(s.guy));
+  if (!context.quiet) fmt::print(stderr, "{}", guy_text(s.guy));
+  return finish_guy(file, context, status, reasons);
+}
+
+}  // namespace
+
+StudyKind guy_statics_study() { return {schema(), run, check}; }
+
+}  // namespace whirl::studies

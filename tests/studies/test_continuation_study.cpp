@@ -1,0 +1,177 @@
+// Study kinds `continuation` and `two-parameter` on systems given as expressions: the example inputs give the published values.
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <regex>
+#include <sstream>
+
+namespace fs = std::filesystem;
+
+namespace {
+
+struct Ran {
+  int status;
+  std::string out, err;
+};
+
+std::string slurp(const fs::path& p) {
+  std::ifstream in(p);
+  std::stringstream s;
+  s << in.rdbuf();
+  return s.str();
+}
+
+class Folder {
+ public:
+  Folder() { fs::create_directories(path_); }
+  ~Folder() { fs::remove_all(path_); }
+  Ran run(const std::string& arguments) const {
+    const auto out = path_ / "out.txt", err = path_ / "err.txt";
+    const int code = std::system(
+        ("cd '" + path_.string() + "' && " + WHIRL_PROGRAM + " run " + arguments + " -o r.h5 >" + out.string() + " 2>" + err.string()).c_str());
+    return {WIFEXITED(code) ? WEXITSTATUS(code) : -1, slurp(out), slurp(err)};
+  }
+  Ran run_text(const std::string& text, const std::string& arguments = "") const {
+    std::ofstream(path_ / "my.toml") << text;
+    return run("my.toml " + arguments);
+  }
+  bool has_result() const { return fs::exists(path_ / "r.h5"); }
+
+ private:
+  fs::path path_ = fs::temp_directory_path() / ("whirl-continuation-" + std::to_string(::getpid()));
+};
+
+std::string study(const std::string& name) { return std::string(WHIRL_SOURCE_DIR) + "/studies/" + name; }
+
+/// Values of `key` of the points of a type, in the order of the JSON text.
+std::vector<double> values(const std::string& json, const std::string& type, const std::string& key) {
+  std::vector<double> found;
+  std::stringstream s(json);
+  for (std::string line; std::getline(s, line);) {
+    std::smatch m;
+    if (line.find("\"type\": \"" + type + "\"") != std::string::npos && std::regex_search(line, m, std::regex("\"" + key + "\": ([-+0-9.eE]+)")))
+      found.push_back(std::stod(m[1]));
+  }
+  std::sort(found.begin(), found.end());
+  return found;
+}
+
+void check_values(std::vector<double> found, std::vector<double> wanted, double tolerance) {
+  std::sort(wanted.begin(), wanted.end());
+  CAPTURE(found, wanted);
+  REQUIRE(found.size() == wanted.size());
+  for (std::size_t i = 0; i < found.size(); ++i) CHECK(std::abs(found[i] - wanted[i]) < tolerance);
+}
+
+const std::string cusp = R"(study = "continuation"
+[equilibrium_model]
+variables = ["x"]
+parameters = { mu = -1.0, lambda = 1.0 }
+rhs = ["mu + lambda*x - x^3"]
+initial = [-1.3]
+[continuation]
+parameter = "mu"
+range = [-1.0, 1.0]
+)";
+
+}  // namespace
+
+TEST_CASE("a normal form in ten lines", "[continuation_study]") {
+  const Folder f;
+  const Ran r = f.run_text(cusp, "--json");
+  CHECK(r.status == 0);
+  const double fold = 2.0 / (3.0 * std::sqrt(3.0));
+  check_values(values(r.out, "LP", "mu"), {-fold, fold}, 1e-10);
+  CHECK(r.err.find("x [-]") != std::string::npos);
+}
+
+TEST_CASE("the example inputs give the published values", "[continuation_study][published]") {
+  const Folder f;
+  Ran r = f.run(study("lorenz.toml") + " --json");
+  CHECK(r.status == 0);
+  check_values(values(r.out, "HB", "rho"), {470.0 / 19.0}, 1e-9);
+  check_values(values(r.out, "BP", "rho"), {1.0}, 1e-10);
+  CHECK(r.out.find("\"criticality\": \"supercritical\"") != std::string::npos);  // the pitchfork
+  CHECK(r.out.find("\"criticality\": \"subcritical\"") != std::string::npos);    // the Hopf point
+  r = f.run(study("co-oxidation.toml") + " --json");
+  CHECK(r.status == 0);
+  check_values(values(r.out, "HB", "q2"), {1.04099156953261, 1.05155746245773}, 1e-9);
+  check_values(values(r.out, "LP", "q2"), {1.04204850537852, 1.05220028786995}, 1e-9);
+  r = f.run(study("whirling-string.toml") + " --json");
+  CHECK(r.status == 0);
+  check_values(values(r.out, "LP", "w"), {1.0370229451, 1.0779949255}, 1e-10);
+  const auto onset = values(r.out, "BP", "w");                            // the upper one also ends the whirl branch
+  check_values(onset, {1.0180097647, 1.0728304789, 1.0728304789}, 1e-9);  // printed to 1e-10; ours end in ..76469 and ..78948
+  CHECK(values(r.out, "RP", "w").size() == 4);
+}
+
+TEST_CASE("charts of systems given as expressions", "[continuation_study][published]") {
+  const Folder f;
+  Ran r = f.run(study("cusp.toml") + " --json");
+  CHECK(r.status == 0);
+  check_values(values(r.out, "CP", "mu"), {0.0}, 1e-10);
+  check_values(values(r.out, "CP", "lambda"), {0.0}, 1e-10);
+  r = f.run(study("co-oxidation-chart.toml") + " --json");
+  CHECK(r.status == 0);
+  check_values(values(r.out, "BT", "q2"), {1.417628, 1.417628, 1.161199, 1.161199}, 1e-6);  // on both curves
+  check_values(values(r.out, "BT", "k"), {0.971397, 0.971397, 0.722339, 0.722339}, 1e-6);
+  const auto gh = values(r.out, "GH", "q2");
+  CHECK(std::any_of(gh.begin(), gh.end(), [](double q2) { return std::abs(q2 - 0.924255) < 1e-6; }));
+  r = f.run(study("duffing-chart.toml") + " --json");
+  CHECK(r.status == 0);
+  CHECK(r.out.find("\"type\": \"RP\"") != std::string::npos);
+}
+
+TEST_CASE("isolas are found by deflation and told", "[continuation_study]") {
+  const Folder f;
+  const std::string text = R"toml(study = "continuation"
+[equilibrium_model]
+variables = ["x"]
+parameters = { mu = -1.0 }
+rhs = ["x*(0.25 - mu^2 - (x-2)^2)"]
+initial = [0.0]
+[continuation]
+parameter = "mu"
+range = [-1.0, 1.0]
+)toml";
+  CHECK(f.run_text(text).err.find("isola") == std::string::npos);
+  const Ran r = f.run_text(text, "--json --set continuation.deflate_at=[0.0]");
+  CHECK(r.status == 0);
+  CHECK(r.err.find(", an isola, born at deflation at mu = 0") != std::string::npos);
+  CHECK(r.out.find("\"isola\": true") != std::string::npos);
+  CHECK(f.run_text(text, "--set continuation.seeds=[2.5,0.0]").err.find(", an isola, born at seed 1") != std::string::npos);
+}
+
+TEST_CASE("bad input to a continuation gives one line", "[continuation_study]") {
+  const Folder f;
+  const auto refused = [&](const std::string& set, const std::string& words) {
+    const Ran r = f.run_text(cusp, "--set " + set);
+    INFO(r.err);
+    CHECK(r.status == 2);
+    CHECK(std::count(r.err.begin(), r.err.end(), '\n') == 1);
+    CHECK(r.err.find(words) != std::string::npos);
+    CHECK_FALSE(f.has_result());
+  };
+  refused("continuation.parameter=mux", "continuation.parameter = \"mux\": no such parameter, did you mean mu?");
+  refused("'continuation.peaks=[\"y\"]'", "continuation.peaks = [\"y\"]: each value must be one of x");
+  refused("continuation.seeds=[1.0]", "must hold groups of 2 numbers: the variables, then mu");
+  refused("continuation.deflate_at=[3.0]", "each value must lie in continuation.range");
+  refused("cable.gravity=9.0", "cable.gravity = 9.0: is not taken beside [equilibrium_model]");
+  refused("response.order=3", "is not taken beside [equilibrium_model]");
+}
+
+TEST_CASE("the averaged response of a stay is a continuation too", "[continuation_study]") {
+  const Folder f;
+  std::string text = slurp(study("oresund-threshold.toml"));
+  text = std::regex_replace(text, std::regex("\"two-parameter\""), "\"continuation\"");
+  text = text.substr(0, text.find("[second]"));
+  const Ran r = f.run_text(text, "--json --set 'continuation.peaks=[\"q2_h2\"]'");
+  CHECK(r.status == 0);
+  const auto folds = values(r.out, "LP", "omega");
+  CHECK(std::any_of(folds.begin(), folds.end(), [](double w) { return std::abs(w - 2.2051616201) < 1e-9; }));
+  CHECK_FALSE(values(r.out, "RP", "omega").empty());
+}
