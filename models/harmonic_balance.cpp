@@ -4,6 +4,7 @@
 
 #include <Eigen/LU>
 #include <algorithm>
+#include <bit>
 #include <numbers>
 
 namespace whirl::models {
@@ -239,19 +240,45 @@ void HarmonicBalance::find_pairs(const ModalSystem<double>& system) {
     }
 }
 
-// Signs s_i and a shift by half the base period, theta -> theta + pi, are a symmetry if every term and force of equation i keeps s_i.
-void HarmonicBalance::find_reflections(const ModalSystem<double>& system) {
-  const auto symmetric = [&](unsigned flips) {  // bit i: coordinate i changes sign
-    const auto flipped = [&](int i) { return ((flips >> i) & 1u) != 0; };
-    const auto odd = [&](int h) { return (h * options_.nu) % 2 != 0; };
-    for (const auto& t : system.terms) {
-      bool sign = odd(t.cos_harmonic);
-      for (int a = 0; a < t.degree; ++a) sign ^= flipped(t.factor[at(a)]);
-      if (sign != flipped(t.equation)) return false;
-    }
-    return std::all_of(system.forces.begin(), system.forces.end(), [&](const auto& f) { return odd(f.harmonic) == flipped(f.equation); });
+// Signs s_i and a shift by half the base period, theta -> theta + pi, are a symmetry if every term and force of equation i keeps s_i: linear
+// equations over {0, 1} for the flips, s_i = (-1)^flip_i. Their least solution, bit i for coordinate i; nothing if there is none.
+std::optional<std::uint64_t> HarmonicBalance::shift_symmetry(const ModalSystem<double>& system, int nu) {
+  struct Row {
+    std::uint64_t flips;
+    bool odd;
   };
-  const auto add = [&](unsigned flips, bool shifted, const std::string& subtype) {
+  const auto bit = [](int i) { return std::uint64_t{1} << i; };
+  std::vector<Row> rows;  // each has a leading bit that no other row has
+  const auto add = [&](std::uint64_t flips, bool odd) {
+    for (const Row& r : rows)
+      if ((flips & std::bit_floor(r.flips)) != 0) {
+        flips ^= r.flips;
+        odd ^= r.odd;
+      }
+    if (flips == 0) return !odd;
+    for (Row& r : rows)
+      if ((r.flips & std::bit_floor(flips)) != 0) r = {r.flips ^ flips, r.odd != odd};
+    rows.push_back({flips, odd});
+    return true;
+  };
+  const auto odd = [nu](int h) { return (h * nu) % 2 != 0; };
+  for (const auto& t : system.terms) {
+    std::uint64_t flips = bit(t.equation);
+    for (int a = 0; a < t.degree; ++a) flips ^= bit(t.factor[at(a)]);
+    if (!add(flips, odd(t.cos_harmonic))) return std::nullopt;
+  }
+  for (const auto& f : system.forces)
+    if (!add(bit(f.equation), odd(f.harmonic))) return std::nullopt;
+  std::uint64_t least = 0;  // free coordinates keep their sign: the leading bits are the highest of their rows
+  for (const Row& r : rows)
+    if (r.odd) least |= std::bit_floor(r.flips);
+  return least;
+}
+
+void HarmonicBalance::find_reflections(const ModalSystem<double>& system) {
+  using Flips = std::uint64_t;  // bit i: coordinate i changes sign
+  if (n_ > 63) throw std::invalid_argument("harmonic balance knows at most 63 coordinates");
+  const auto add = [&](Flips flips, bool shifted, const std::string& subtype) {
     Vector signs(size());
     for (int i = 0; i < n_; ++i)
       for (int c = 0; c < width_; ++c) signs[i * width_ + c] = (((flips >> i) & 1u) != 0) != (shifted && ((c + 1) / 2) % 2 == 1) ? -1.0 : 1.0;
@@ -260,30 +287,26 @@ void HarmonicBalance::find_reflections(const ModalSystem<double>& system) {
   };
   const auto mask = [&](const CoordinateReflection& r) {
     if (static_cast<int>(r.signs.size()) != n_) throw std::invalid_argument(fmt::format("a reflection needs {} signs, got {}", n_, r.signs.size()));
-    unsigned flips = 0;
+    Flips flips = 0;
     for (int i = 0; i < n_; ++i) {
       if (std::abs(r.signs[at(i)]) != 1) throw std::invalid_argument("the signs of a reflection are +1 or -1");
-      if (r.signs[at(i)] < 0) flips |= 1u << i;
+      if (r.signs[at(i)] < 0) flips |= Flips{1} << i;
     }
     return flips;
   };
-  constexpr int searched = 16;  // coordinates up to which all sign patterns are tried
-  if (n_ > 31) throw std::invalid_argument("harmonic balance knows at most 31 coordinates");
-  const unsigned patterns = n_ <= searched ? 1u << n_ : 1u;
-  unsigned base = 0;
-  while (base < patterns && !symmetric(base)) ++base;
-  if (base == 0) add(0, true, "PD");
-  std::vector<unsigned> group = {0};  // of the coordinate reflections
+  const std::optional<Flips> base = shift_symmetry(system, nu());
+  if (base && *base == 0) add(0, true, "PD");
+  std::vector<Flips> group = {0};  // of the coordinate reflections
   for (const auto& r : options_.reflections) {
-    const unsigned flips = mask(r);
+    const Flips flips = mask(r);
     add(flips, false, r.subtype);
     const std::size_t known = group.size();
     if (std::find(group.begin(), group.end(), flips) == group.end() && known < 8)
       for (std::size_t i = 0; i < known; ++i) group.push_back(group[i] ^ flips);
   }
-  if (base == patterns) return;
-  for (const unsigned flips : group)
-    if ((base ^ flips) != 0) add(base ^ flips, true, "SB");
+  if (!base) return;
+  for (const Flips flips : group)
+    if ((*base ^ flips) != 0) add(*base ^ flips, true, "SB");
 }
 
 // r(S x) = S r(x) at an arbitrary x.

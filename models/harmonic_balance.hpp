@@ -23,7 +23,9 @@
 /// Throws std::invalid_argument for options out of range and reflections that are none. Objects hold scratch memory: one per thread.
 
 #include <complex>
+#include <cstdint>
 #include <memory>
+#include <optional>
 
 #include "core/newton.hpp"
 #include "core/orbit_problem.hpp"
@@ -181,6 +183,7 @@ class HarmonicBalance : public OrbitProblem {
   void synthesise(const double* x, double* q) const;
   static Matrix cosines(int max_harmonic, int nu, int samples);
   void find_pairs(const ModalSystem<double>& system);
+  static std::optional<std::uint64_t> shift_symmetry(const ModalSystem<double>& system, int nu);
   void find_reflections(const ModalSystem<double>& system);
   void check_reflection(const Reflection& reflection) const;
 

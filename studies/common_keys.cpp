@@ -8,7 +8,7 @@ namespace whirl::studies {
 
 using namespace models;
 
-void add_stay_keys(Schema& s) {
+void add_stay_keys(Schema& s, bool any_motion) {
   append_fields(s, [](std::string_view name) { return name.starts_with("cable."); });
   s.add({.name = "cable.coefficients",
          .description = "modal coefficients by quadrature, or as the paper's closed forms print them",
@@ -19,8 +19,13 @@ void add_stay_keys(Schema& s) {
          .default_value = std::string("reduced"),
          .choices = {"reduced", "full"}});
   append_fields(s, [](std::string_view name) { return !name.starts_with("cable.") && name != "omega"; });
-  s.add({.name = "support_motion.end", .description = "the support that moves", .default_value = std::string("upper"), .choices = {"upper"}});
-  s.add({.name = "support_motion.direction", .description = "its direction", .default_value = std::string("horizontal"), .choices = {"horizontal"}});
+  const std::vector<std::string> ends = {"upper", "lower"}, directions = {"horizontal", "vertical", "chord", "normal", "out-of-plane"};
+  const auto choices = [any_motion](const std::vector<std::string>& all) { return any_motion ? all : std::vector{all.front()}; };
+  s.add({.name = "support_motion.end", .description = "the support that moves", .default_value = ends.front(), .choices = choices(ends)});
+  s.add({.name = "support_motion.direction",
+         .description = "its direction; chord: lower to upper end, normal: across the chord, downwards",
+         .default_value = directions.front(),
+         .choices = choices(directions)});
   s.add({.name = "omega",
          .unit = "rad/s",
          .description = "excitation frequency, needed where the continuation parameter is another number",

@@ -11,8 +11,8 @@
 
 namespace whirl::studies {
 
-/// [cable] with coefficients, [model], [damping], [support_motion], omega.
-void add_stay_keys(Schema& schema);
+/// [cable] with coefficients, [model], [damping], [support_motion], omega. `any_motion`: either end moves, in any direction.
+void add_stay_keys(Schema& schema, bool any_motion = false);
 /// [continuation] with the parameter's default.
 void add_continuation_keys(Schema& schema, const std::string& default_parameter);
 void add_verification_keys(Schema& schema);

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "studies/cable_model_keys.hpp"
 #include "studies/common_keys.hpp"
 #include "studies/modal_model_input.hpp"
 
@@ -28,7 +29,8 @@ ForcedSystem of_modal_model(const Configuration& c, const std::vector<std::strin
 }  // namespace
 
 void add_forced_system_keys(Schema& schema) {
-  add_stay_keys(schema);
+  add_stay_keys(schema, true);
+  add_model_keys(schema);
   schema.add_free(modal_model_section());
   schema.add_alternative({.sections = {"cable", "model", "damping", "support_motion"}, .free_sections = {"modal_model"}});
 }
@@ -45,7 +47,9 @@ ForcedSystem forced_system_of(const Configuration& c, const std::vector<std::str
       throw InputError(fmt::format("{}: parameter '{}': {}", c.source(), name,
                                    guess.empty() ? e.what() : fmt::format("no such parameter, did you mean {}?", guess)));
     }
-  return {stay_system(stay_of(c), chosen, terms_of(c), coefficients_of(c)), {{{-1, 1}, "WH"}}, {"q1", "q2"}, "m", units};
+  if (is_plain_stay(c)) return {stay_system(stay_of(c), chosen, terms_of(c), coefficients_of(c)), {{{-1, 1}, "WH"}}, {"q1", "q2"}, "m", units};
+  const CableModel model = cable_model_of(c);
+  return {cable_system(model, chosen), cable_reflections(model), coordinate_names(c), "m", units};
 }
 
 void check_forced_lens(const Configuration& c, const std::string& key, const std::string& lens, const std::string& range_key, double lower,
@@ -79,7 +83,13 @@ double forced_lens_value(const Configuration& c, const std::string& lens) {
 }
 
 std::vector<std::string> check_forced_system(const Configuration& c) {
-  if (!c.has("modal_model")) return check_cable(c);
+  if (!c.has("modal_model")) {
+    (void)cable_model_of(c);
+    auto warnings = check_cable(c);
+    if (is_multi_mode(c))
+      std::erase_if(warnings, [](const auto& w) { return w.find("differ by more than 20 %") != std::string::npos; });  // of two modes
+    return warnings;
+  }
   (void)modal_model_of(c);
   return {};
 }

@@ -7,6 +7,7 @@
 #include <filesystem>
 
 #include "studies/export.hpp"
+#include "studies/modes_study.hpp"
 #include "studies/registry.hpp"
 #include "studies/result_file.hpp"
 
@@ -62,6 +63,9 @@ int main(int argc, char** argv) {
   auto* check_command = app.add_subcommand("check", "read and check a study file, compute nothing");
   check_command->add_option("FILE", file, "study file (TOML)")->required();
   check_command->add_option("--set", overrides, "override a key: section.key=value (repeatable)")->allow_extra_args(false);
+  auto* modes_command = app.add_subcommand("modes", "frequencies, shapes' numbers and resonances of a study file's cable, as a table");
+  modes_command->add_option("FILE", file, "study file (TOML) with a [cable]")->required();
+  modes_command->add_option("--set", overrides, "override a key: section.key=value (repeatable)")->allow_extra_args(false);
   auto* init_command = app.add_subcommand("init", "print a commented study file");
   init_command->add_option("KIND", kind, "study kind, see `whirl list`")->required();
   auto* list_command = app.add_subcommand("list", "study kinds");
@@ -74,6 +78,7 @@ int main(int argc, char** argv) {
     app.parse(argc, argv);
     if (run_command->parsed()) status = run(file, overrides, output, json, quiet);
     if (check_command->parsed()) status = check(file, overrides);
+    if (modes_command->parsed()) fmt::print("{}", modes_table(read(file, overrides)));
     if (init_command->parsed()) fmt::print("{}", example_toml(study_kind(kind).schema));
     if (list_command->parsed())
       for (const auto& k : study_kinds()) fmt::print("{:<16} {}\n", k.schema.kind(), k.schema.summary());

@@ -11,6 +11,8 @@
 #include "studies/guy_statics_study.hpp"
 #include "studies/guy_stiffness_study.hpp"
 #include "studies/integrate_study.hpp"
+#include "studies/mode_convergence_study.hpp"
+#include "studies/modes_study.hpp"
 #include "studies/periodic_study.hpp"
 #include "studies/slow_flow_study.hpp"
 #include "studies/superharmonic_study.hpp"
@@ -29,6 +31,8 @@ const std::vector<StudyKind>& study_kinds() {
       compare_study(),
       integrate_study(),
       basins_study(),
+      modes_study(),
+      mode_convergence_study(),
       catenary_modes_study(),
       catenary_forced_study(),
       veering_study(),

@@ -136,6 +136,35 @@ def two_parameter(path):
             "support_motion.amplitude": [0.305, 0.3, 0.4, 0.4, 0.5088, 0.5088], "residual": [0.0] * 6})
 
 
+def modes(path):
+    """Three symmetric modes, two antisymmetric, one out of plane, of a cable beyond its first cross-over."""
+    with h5py.File(path, "w") as file:
+        study(file, "modes")
+        for name, value in {"sag_ratio": 0.02, "lambda2": 60.0, "chord_tension": 2e4}.items():
+            file[f"cable/{name}"] = value
+        b = np.pi * np.array([1, 2.3, 2, 3.1, 4, 5.02])
+        table(file, "/modes", {"mode": ["y1", "z1", "z2", "z3", "z4", "z5"],
+                               "family": ["out of plane"] + ["symmetric", "antisymmetric"] * 2 + ["symmetric"], "frequency_number": b})
+        xi = np.linspace(0, 1, 51)
+        for k, family in ((1, "symmetric"), (2, "antisymmetric"), (3, "symmetric"), (4, "antisymmetric")):
+            group = table(file, f"/shapes/z{k}", {"xi": xi, "transverse": np.sin(k * np.pi * xi), "longitudinal": 0.01 * np.sin(np.pi * xi)})
+            group.attrs.update({"family": family, "order": 1.0, "frequency": 0.4 * k})
+        lambda2 = np.logspace(-1, 4, 60)
+        table(file, "/cross_over", {"lambda2": lambda2, **{f"symmetric{n}": np.pi * (2 * n - 1 + 1.9 * lambda2 / (lambda2 + 40 * n**2))
+                                                           for n in (1, 2, 3, 4)}})
+        table(file, "/symmetric_forms", {"xi": xi, **{f"form{n}": np.sin(np.pi * xi)**n for n in (1, 2, 3)}}).attrs["lambda2"] = [9.9, 39.5, 158.0]
+
+
+def mode_convergence(path):
+    with h5py.File(path, "w") as file:
+        study(file, "mode-convergence")
+        file["study"].attrs.update({"peak.harmonic": 2.0, "peak.amplitude": 0.15, "peak.station": 0.5})
+        n = np.array([1, 2, 3, 1, 2, 3])
+        table(file, "/convergence", {"longitudinal": ["galerkin"] * 3 + ["quasi-static"] * 3, "modes": n,
+                                     "threshold": np.where(n == 2, np.nan, 0.35 + 0.01 / n), "threshold_omega": 1.6 + 0.01 / n,
+                                     "peak": 1.1 - 0.02 / n, "peak_omega": 1.61 + 0.001 * n})
+
+
 def continuation(path):
     """Rest points of a pitchfork in (x, y) with an isola in x alone; mu varies, lambda is fixed."""
     with h5py.File(path, "w") as file:
@@ -500,6 +529,38 @@ def test_two_parameter_cut_short(folder):
     with h5py.File(path, "r+") as file:
         del file["curves"]
     check_refused(folder, "plane.h5", "nothing to draw")
+
+
+def test_modes_figures(folder):
+    path = os.path.join(folder, "cable.h5")
+    modes(path)
+    done = plot(path, "--format", "png")
+    check(done.returncode == 0 and done.stderr == "", done.stderr)
+    names = [f"cable-{n}.png" for n in ("antisymmetric", "cross-over", "roots", "shapes", "symmetric")]
+    check(sorted(os.listdir(folder)) == sorted(names + ["cable.h5"]), str(os.listdir(folder)))
+    for name in names:
+        check_picture(os.path.join(folder, name))
+    with h5py.File(path, "r+") as file:
+        del file["cross_over"], file["symmetric_forms"], file["shapes/z4"]
+    done = plot(path, "--format", "png", "-o", os.path.join(folder, "less"))
+    check(done.returncode == 0, done.stderr)
+    check(sorted(os.listdir(os.path.join(folder, "less"))) == ["cable-roots.png", "cable-shapes.png"], "figures without their tables")
+    with h5py.File(path, "r+") as file:
+        del file["modes"]
+    check_refused(folder, "cable.h5", "nothing to draw")
+
+
+def test_mode_convergence_figure(folder):
+    """A threshold that was not found leaves a gap."""
+    from figures_mode_convergence import sentence
+    from result_file import read
+    path = os.path.join(folder, "modes.h5")
+    mode_convergence(path)
+    done = plot(path, "--format", "png")
+    check(done.returncode == 0 and done.stderr == "", done.stderr)
+    check_picture(os.path.join(folder, "modes-convergence.png"))
+    words = sentence(read(path).group("convergence"), ["galerkin", "quasi-static"])
+    check("1.9 % at 1" in words and "differ by 0 %" in words, words)
 
 
 def check_figures(path, names, most=0.6):
