@@ -30,8 +30,8 @@ TEST_CASE("catenary series: agrees with the spectral solver in its region", "[pu
 TEST_CASE("catenary series: digits lost by cancellation") {
   const Geometry g = by_sag(0.817, 0.0);  // xi_2 = 0.70015
   const SeriesOptions at_end{.match_in_plane = 0.71};
-  CHECK(series_determinant(g.x1, g.x2, 5.0, Plane::in_plane, at_end).digits_lost == Approx(2.5).margin(0.3));
-  CHECK(series_determinant(g.x1, g.x2, 25.0, Plane::in_plane, at_end).digits_lost == Approx(12.0).margin(0.3));
+  CHECK(series_determinant(g.x1, g.x2, 5.0, Plane::in_plane, at_end).digits_lost == Approx(2.5).epsilon(0).margin(0.3));
+  CHECK(series_determinant(g.x1, g.x2, 25.0, Plane::in_plane, at_end).digits_lost == Approx(12.0).epsilon(0).margin(0.3));
   const Geometry steep = by_sag(0.98, 1.0);
   const SeriesModes s = series_modes(steep.x1, steep.x2, 8, Plane::in_plane);
   CHECK(s.refused == 4);

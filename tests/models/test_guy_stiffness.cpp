@@ -88,17 +88,17 @@ TEST_CASE("Oklahoma City guy, undamped: quoted values, first pole and zero", "[p
   CHECK(w1 == Approx(0.893936770554).epsilon(1e-11));
   const LinearGuy full(rest, 9.0);
   const auto k = [&](double omega) { return full.modulus(Direction::horizontal, omega * w1, 0.0).real() / kip_per_foot; };
-  CHECK(k(0.0) == Approx(4.656).margin(5e-4));
-  CHECK(k(0.5) == Approx(4.066).margin(5e-4));
-  CHECK(k(1.0) == Approx(1.126).margin(5e-4));
-  CHECK(k(1.3) == Approx(-6.55).margin(5e-3));
-  CHECK(k(2.5) == Approx(13.0).margin(5e-2));
-  CHECK(full.zeros(Direction::horizontal).front() / w1 == Approx(1.081).margin(5e-4));
-  CHECK(full.poles(Plane::in_plane).front().frequency / w1 == Approx(1.5643).margin(5e-5));
-  CHECK(full.modulus(Direction::horizontal, 3.14, 0.01 * w1).real() / kip_per_foot == Approx(10.6266).margin(5e-5));
+  CHECK(k(0.0) == Approx(4.656).epsilon(0).margin(5e-4));
+  CHECK(k(0.5) == Approx(4.066).epsilon(0).margin(5e-4));
+  CHECK(k(1.0) == Approx(1.126).epsilon(0).margin(5e-4));
+  CHECK(k(1.3) == Approx(-6.55).epsilon(0).margin(5e-3));
+  CHECK(k(2.5) == Approx(13.0).epsilon(0).margin(5e-2));
+  CHECK(full.zeros(Direction::horizontal).front() / w1 == Approx(1.081).epsilon(0).margin(5e-4));
+  CHECK(full.poles(Plane::in_plane).front().frequency / w1 == Approx(1.5643).epsilon(0).margin(5e-5));
+  CHECK(full.modulus(Direction::horizontal, 3.14, 0.01 * w1).real() / kip_per_foot == Approx(10.6266).epsilon(0).margin(5e-5));
   // the numbers of p. 101, p. 107 (k = 46.32 for the misprinted 45.2) and p. 108
   CHECK(closed.alpha() == Approx(0.3983938817).epsilon(1e-9));
-  CHECK(closed.modulus(ClosedForm::sarvi, 0.1, 0.0).real() / kip_per_foot == Approx(4.31).margin(5e-3));
+  CHECK(closed.modulus(ClosedForm::sarvi, 0.1, 0.0).real() / kip_per_foot == Approx(4.31).epsilon(0).margin(5e-3));
   CHECK(ClosedStiffness(rest, 0.485).modulus(ClosedForm::sarvi, 0.1, 0.0).real() / kip_per_foot == Approx(5.243317319).epsilon(1e-9));
   const ClosedStiffness dav(davenport_rest());
   CHECK(davenport().taut_modulus() / kip_per_foot == Approx(46.32482416).epsilon(1e-9));

@@ -56,7 +56,8 @@ double omega_of(const ResultReader& file, const std::string& branch, const std::
 TEST_CASE("periodic: the Oresund stay about its whirling point, motions checked by integration") {
   const fs::path result = scratch("periodic.h5");
   const Run r = run("run " + example + "oresund-periodic.toml -o " + result.string() +
-                    " --quiet --set continuation.range=[1.5,1.7] --set verification.omega=[1.65] --set second.range=[] --set seeds.grid=3 --set periodic.tolerance=1e-11");
+                    " --quiet --set continuation.range=[1.5,1.7] --set verification.omega=[1.65] --set second.range=[] --set seeds.grid=3 --set "
+                    "periodic.tolerance=1e-11");
   INFO(r.out);
   REQUIRE(r.status == 0);
   const ResultReader file(result);

@@ -73,7 +73,7 @@ TEST_CASE("slow-flow study: the coupled response is found without being told of 
   CHECK(births[1] == Approx(2.02690816547).epsilon(1e-10));
   CHECK(special(file, "LP", "WD1").size() == 1);
   const auto runs = file.table("/verification/runs");
-  REQUIRE(runs.columns.front().values.size() == 4);                                                  // three averaged states and the start
+  REQUIRE(runs.columns.front().values.size() == 4);                                                             // three averaged states and the start
   CHECK(file.column("/verification/runs", "q1_h1.5").values.back() == Approx(1.8874).epsilon(0).margin(1e-4));  // period-two motion at 2.1 rad/s
   CHECK(file.column("/verification/runs", "averaged_q1_h1.5").values.back() == Approx(2.3154).epsilon(0).margin(1e-4));
   CHECK(file.column("/verification/runs", "multiple").values.back() == 2.0);
