@@ -123,7 +123,8 @@ TEST_CASE("modes are orthonormal, also near the level guy and upside down") {
             return whirl::integrate<double, 80>([&](double t) { return 0.5 * pi * std::sin(pi * t) * f(0.5 * (1.0 - std::cos(pi * t))); });
           };
           const double product = inner([&](double s) { return mode[i].value(s) * mode[j].value(s); });
-          CHECK(product == Approx(i == j ? 1.0 : 0.0).epsilon(0).margin(k > 10.0 ? 1e-6 : 2e-10));  // k = 50: the quadrature's own error
+          // k = 50: the quadrature's own error; k near 1: Bessel functions of nearly equal arguments cancel six digits before the series takes over
+          CHECK(product == Approx(i == j ? 1.0 : 0.0).epsilon(0).margin(k > 10.0 ? 1e-6 : k < 1.05 ? 1e-9 : 2e-10));
         }
         const double h = k > 10.0 ? 4e-8 : 1e-4;
         for (const double s : {0.0, 0.31, 0.5, 1.0}) {
