@@ -12,11 +12,14 @@ Curve::Curve(const Problem& f, Blocks blocks, const CurveOptions& options)
       leads_(orbit_ ? 1 : static_cast<int>(blocks_.indices.size())),
       weight_(Vector::Ones(f.size() + 1)),
       r_(f.size()),
-      step_(f.size() + 1),
-      rhs_(f.size() + 1),
+      step_(Vector::Zero(f.size() + 1)),
       jacobian_(f.size(), f.size() + 1),
-      bordered_(f.size() + 1, f.size() + 1),
-      lu_(f.size() + 1) {
+      whole_(blocks_.indices.size() == 1),
+      state_(static_cast<int>(blocks_.indices[0].size())),
+      solution_(state_ + 1),
+      rhs_(state_ + 1),
+      bordered_(state_ + 1, state_ + 1),
+      lu_(state_ + 1) {
   if (f.parameters() != 1) throw std::invalid_argument("a curve needs exactly one free parameter");
   if (blocks_.indices.size() > Signature::max_blocks) throw std::invalid_argument("more than 8 symmetry blocks");
   for (const auto& indices : blocks_.indices) {
@@ -38,6 +41,33 @@ void Curve::set_scales(double x_scale, double p_scale) {
   weight_[f_.size()] = 1.0 / (p_scale * p_scale);
 }
 
+// The bordered matrix of the coordinates that the symmetries leave: of the others r, steps and tangents are zero.
+void Curve::border(In normal) {
+  const int n = f_.size();
+  if (whole_) {
+    bordered_.topRows(n) = jacobian_;
+    bordered_.row(n) = (normal.array() * weight_.array()).transpose();
+    return;
+  }
+  const Indices& even = blocks_.indices[0];
+  for (int c = 0; c < state_; ++c) {
+    const int column = even[static_cast<std::size_t>(c)];
+    for (int r = 0; r < state_; ++r) bordered_(r, c) = jacobian_(even[static_cast<std::size_t>(r)], column);
+    bordered_(state_, c) = normal[column] * weight_[column];
+  }
+  for (int r = 0; r < state_; ++r) bordered_(r, state_) = jacobian_(even[static_cast<std::size_t>(r)], n);
+  bordered_(state_, state_) = normal[n] * weight_[n];
+}
+
+// Solves the bordered system for rhs_, the answer in all coordinates.
+void Curve::solve_bordered(Out answer) {
+  if (whole_) return lu_.solve(rhs_, answer);
+  lu_.solve(rhs_, solution_);
+  answer.setZero();
+  for (int i = 0; i < state_; ++i) answer[blocks_.indices[0][static_cast<std::size_t>(i)]] = solution_[i];
+  answer[f_.size()] = solution_[state_];
+}
+
 Curve::Report Curve::correct(Out u, In normal, In anchor) {
   const int n = f_.size();
   Report report;
@@ -47,17 +77,18 @@ Curve::Report Curve::correct(Out u, In normal, In anchor) {
     f_.linearise(u, r_, jacobian_);
     report.residual = r_.lpNorm<Eigen::Infinity>();
     if (!std::isfinite(report.residual)) return report;  // of the Jacobian: the step or the tangent is not finite then
-    bordered_.topRows(n) = jacobian_;
-    bordered_.row(n) = (normal.array() * weight_.array()).transpose();
+    border(normal);
     lu_.compute(bordered_);
     if (last) {
       report.ok = true;
       return report;
     }
     if (report.iterations == options_.max_iterations) return report;
-    rhs_.head(n) = -r_;
-    rhs_[n] = -((u - anchor).array() * normal.array() * weight_.array()).sum();
-    lu_.solve(rhs_, step_);
+    if (whole_) rhs_.head(n) = -r_;
+    else
+      for (int i = 0; i < state_; ++i) rhs_[i] = -r_[blocks_.indices[0][static_cast<std::size_t>(i)]];
+    rhs_[state_] = -((u - anchor).array() * normal.array() * weight_.array()).sum();
+    solve_bordered(step_);
     const double size = length(step_);
     if (!std::isfinite(size)) return report;
     u += step_;
@@ -75,8 +106,8 @@ Curve::Report Curve::correct(Out u, In normal, In anchor) {
 bool Curve::complete(In u, Out tangent, Signature& signature) {
   const int n = f_.size();
   rhs_.setZero();
-  rhs_[n] = 1.0;
-  lu_.solve(rhs_, tangent);
+  rhs_[state_] = 1.0;
+  solve_bordered(tangent);
   const double size = length(tangent);
   if (!std::isfinite(size) || size == 0.0) return false;
   tangent /= size;
@@ -96,18 +127,16 @@ bool Curve::complete(In u, Out tangent, Signature& signature) {
   return true;
 }
 
-// det r_x = t_p det [J; t'], and the determinants of the odd blocks divide out.
+// det r_x = t_p det [J; t'] in the coordinates of the motion itself; the others have determinants of their own.
 void Curve::block_determinants(Signature& signature, bool forward) {
-  bool all = lu_.negative_determinant() ^ !forward;
+  signature.negative[0] = lu_.negative_determinant() ^ !forward;
   for (std::size_t k = 1; k < blocks_.indices.size(); ++k) {
     const auto& indices = blocks_.indices[k];
     for (std::size_t c = 0; c < indices.size(); ++c)
       for (std::size_t r = 0; r < indices.size(); ++r) block_[k](static_cast<int>(r), static_cast<int>(c)) = jacobian_(indices[r], indices[c]);
     block_lu_[k].compute(block_[k]);
     signature.negative[k] = block_lu_[k].negative_determinant();
-    all ^= signature.negative[k];
   }
-  signature.negative[0] = all;
 }
 
 bool Curve::count_multipliers(In u, Signature& signature) {

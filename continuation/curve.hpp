@@ -4,6 +4,8 @@
 ///     [ r_x  r_p ] [du]   [ -r              ]          [ J  ]     [0]
 ///     [   c' W   ]        [ -c'W (u - anchor)]         [c'W ] t = [1],  t normalised in the metric W
 ///
+/// Where symmetries split the Jacobian into blocks only block 0 is solved: r, steps and tangents are zero in the others.
+///
 /// W is diagonal: lengths are measured in units of the parameter range and of the size of x, so that steps need no tuning.
 
 #include <array>
@@ -86,6 +88,8 @@ class Curve {
   bool between(const Sample& a, const Sample& b, double sigma, Sample& out);
 
  private:
+  void border(In normal);
+  void solve_bordered(Out answer);
   void block_determinants(Signature& signature, bool forward);
   bool count_multipliers(In u, Signature& signature);
 
@@ -98,8 +102,12 @@ class Curve {
   Eigen::VectorXi group_;  // of each multiplier
   int leads_;
   std::array<double, Signature::max_blocks> lead_{};
-  Vector weight_, r_, step_, rhs_;
-  Matrix jacobian_, bordered_;
+  Vector weight_, r_, step_;
+  Matrix jacobian_;
+  bool whole_;  // no symmetry: block 0 is everything, in order
+  int state_;   // size of block 0
+  Vector solution_, rhs_;
+  Matrix bordered_;
   DenseLu lu_;
   std::vector<Matrix> block_;
   std::vector<DenseLu> block_lu_;

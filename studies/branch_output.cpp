@@ -137,7 +137,7 @@ std::string BranchOutput::text(const std::vector<Branch>& branches) const {
   std::vector<const PointColumn*> shown;
   const bool chosen = std::any_of(columns.begin(), columns.end(), [](const auto& c) { return c.shown; });
   for (const auto& c : columns)
-    if ((c.shown || (!chosen && c.unit == "m" && c.name.starts_with("q"))) && shown.size() < 5) shown.push_back(&c);
+    if ((c.shown || (!chosen && c.unit != "rad" && c.name.starts_with("q"))) && shown.size() < 5) shown.push_back(&c);
   out += fmt::format("{:<7} {:<6} {:<10} {:>18}", "branch", "point", "subtype", fmt::format("{} [{}]", parameter, parameter_unit));
   for (const auto* c : shown) out += fmt::format(" {:>14}", fmt::format("{} [{}]", c->name, c->unit));
   out += fmt::format(" {:>9} {:>9}\n", "unstable", "residual");

@@ -1,11 +1,12 @@
 // Exact periodic motions of the Oresund stay (nk-reduced, exact coefficients, U = 0.5 m): all special points found by the walker at default settings.
 // Reference: AUTO-07p and an extended Newton on the Poincare map, agreeing to 1e-9 .. 1e-11.
 #include <catch2/catch.hpp>
+#include <numbers>
 
 #include "continuation/orbit_network.hpp"
 #include "continuation/torus.hpp"
 #include "continuation/two_parameter.hpp"
-#include "core/newton.hpp"
+#include "core/kinsol.hpp"
 #include "models/harmonic_balance.hpp"
 #include "tests/models/oresund.hpp"
 
@@ -24,7 +25,7 @@ struct Expected {
 OrbitNetwork whole(const HarmonicBalance& hb, double lower, double upper, int doublings) {
   OrbitNetwork net(hb, {.walk = {.lower = lower, .upper = upper}, .depth = 2}, doublings);
   net.set_namer([](const Branch& b, int level) { return std::string(level == 0 ? "" : "D") + (b.active_reflections.empty() ? "W" : "IP"); });
-  const NewtonResult start = newton(hb, hb.linear_response(Vector::Constant(1, lower)));
+  const NewtonResult start = line_search_solve(hb, hb.linear_response(Vector::Constant(1, lower)));
   REQUIRE(start.ok());
   net.add_seed(start.x, "start");
   net.switch_branches();
@@ -83,6 +84,37 @@ TEST_CASE("orbits: every special point of the Oresund stay's exact motions, doub
   CHECK(net.network(1).branches()[0].born_at == "IP1:PD1");
   CHECK(net.network(1).branches()[1].born_at == "IP1:PD2");
   CHECK(net.network(1).branches()[2].born_at == "DIP1:BP1");
+}
+
+TEST_CASE("orbits: special points of the full coupling, each with its multiplier integrated") {
+  const HarmonicBalance hb = stay_harmonic_balance(oresund(), {Lens("omega")}, {.harmonics = 24}, Terms::full);
+  const OrbitNetwork net = whole(hb, 1.05, 2.4, 0);
+  compare(net.network(0), {{"IP1", "LP", "", 1.11978558563, 0, 1},
+                           {"IP1", "LP", "", 1.11048571515, 1, 0},
+                           {"IP1", "BP", "WH", 1.57654831708, 0, 1},
+                           {"IP1", "BP", "WH", 1.72611194326, 1, 0},
+                           {"IP1", "LP", "", 1.80515694788, 0, 1},
+                           {"IP1", "LP", "", 1.67472790081, 1, 0},
+                           {"IP1", "PD", "", 2.02671983324, 0, 1},
+                           {"IP1", "PD", "", 2.11021117128, 1, 0},
+                           {"IP1", "PD", "", 2.18212356118, 0, 1},
+                           {"IP1", "PD", "", 2.23197839079, 1, 0},
+                           {"W1", "LP", "", 1.72029046449, 0, 1},
+                           {"W1", "LP", "", 1.69568613413, 1, 0},
+                           {"W1", "TR", "", 1.69593259680, 0, 2},
+                           {"W1", "TR", "", 1.75923079282, 2, 0},
+                           {"W1", "LP", "", 1.75992834342, 0, 1},
+                           {"W1", "BP", "WH", 1.72611194326, 1, 1}});
+  for (const auto& b : net.network(0).branches())
+    for (const auto& s : b.special) {
+      INFO(to_string(s.type) << " at " << s.u[hb.size()]);
+      const IntegratedPeriod period = monodromy_by_integration(hb.system_at(s.u), hb.state_at(s.u, 0.0), 1, 1e-12);
+      REQUIRE(period.ok);
+      const double angle = s.type == EventType::period_doubling ? std::numbers::pi : 2.0 * std::numbers::pi * s.frequency / s.u[hb.size()];
+      double nearest = 1.0;
+      for (const auto& mu : Eigen::VectorXcd(period.monodromy.eigenvalues())) nearest = std::min(nearest, std::abs(mu - std::polar(1.0, angle)));
+      CHECK(nearest < 1e-6);  // at a fold a multiplier moves with the root of every error
+    }
 }
 
 TEST_CASE("orbits: two doublings 0.003 rad/s apart are told apart by their directions") {
@@ -183,10 +215,11 @@ TEST_CASE("orbits: thresholds in (omega, U) of whirling, folds and both period d
     const HarmonicBalance& own = doubled ? dynamic_cast<const HarmonicBalance&>(hb2.doubled()) : hb2;
     const Vector u = doubled ? hb2.from_doubled(z.u) : z.u;
     REQUIRE(z.u.size() == own.size() + 2);
-    const IntegratedOrbit integrated = periodic_by_integration(hb2.system_at(u), hb2.state_at(u, 0.0), 1);
+    // Of the motion as it is: at the least U of a fold curve, a cusp, three motions meet and a Newton iteration finds any of them.
+    const IntegratedPeriod integrated = monodromy_by_integration(hb2.system_at(u), hb2.state_at(u, 0.0), 1);
     double nearest = 1.0;
     for (const auto& mu : Eigen::VectorXcd(integrated.monodromy.eigenvalues())) nearest = std::min(nearest, std::abs(mu - row.multiplier));
-    CHECK(nearest < (row.type == EventType::fold ? 1e-5 : 1e-8));  // the multiplier of a fold moves with the root of the distance
+    CHECK(nearest < 1e-7);  // 16 harmonics, CVODE at 1e-13
   }
 }
 
