@@ -706,6 +706,67 @@ def test_hanging_cable_moved(folder):
         check(np.allclose(dx, c * (0.1 - slope * 0.2)) and np.allclose(dy, c * (slope * 0.1 + 0.2)), f"{dx} {dy}")
 
 
+def periodic(path):
+    """In plane, a whirling branch and one of period two; two orbits; a curve with a cusp."""
+    with h5py.File(path, "w") as file:
+        study(file, "periodic")
+        file["study"].attrs["second.parameter"] = "support_motion.amplitude"
+        omega = np.linspace(1, 2, 15)
+        for name, A, period, unstable in (("IP1", 0.0, 1.0, omega > 1.5), ("W1", 1.0, 1.0, omega < 0), ("DW1", 0.4, 2.0, omega > 1.8)):
+            columns = {"omega": omega, "n_unstable": unstable, "arclength": np.arange(15.0)}
+            for q, size in (("q1", A), ("q2", 1.0)):
+                columns[f"{q}_max"] = size * (omega - 0.9)
+                for k in (0, 0.5, 1, 1.5, 2):
+                    columns[f"{q}_h{k:g}"] = size * omega / (1 + k)
+                    columns[f"{q}_h{k:g}_phase"] = 0 * omega
+            for i, z in enumerate((0.9 * np.exp(1j * omega), 0.9 * np.exp(-1j * omega), 1.2 * unstable + 0.1, 0.3 + 0 * omega)):
+                columns[f"mu{i + 1}_re"], columns[f"mu{i + 1}_im"] = np.real(z), np.imag(z)
+            table(file, f"/branches/{name}", columns).attrs["period"] = period
+        table(file, "/special_points", {
+            "branch": ["IP1", "W1"], "label": ["PD1", "TR1"], "type": ["PD", "TR"], "subtype": ["", ""], "omega": [1.5, 1.7], "q1_max": [0.0, 0.8],
+            "q2_max": [0.6, 0.8], "arclength": [7.0, 9.8], "unstable_before": [0, 0], "unstable_after": [1, 0],
+            **{f"{q}_h{k:g}": [0.1, 0.2] for q in ("q1", "q2") for k in (0, 0.5, 1, 1.5, 2)}})
+        for i, (name, stable) in enumerate((("W1", 1.0), ("IP1", 0.0))):
+            group = table(file, f"/verification/motions/{i:03}", wave(1.65, 2, stable, 1.0, 65, True))
+            group.attrs.update({"branch": name, "stable": stable, "period": 1.0, "omega": 1.65})
+        U = np.linspace(0.3, 0.5, 9)
+        for name, kind, at in (("PD1", "PD", 1.4 + U), ("TR2", "TR", 1.2 + U)):
+            table(file, f"/curves/{name}", {"omega": at, "support_motion.amplitude": U, "coefficient": U - 0.4}).attrs.update({"type": kind, "subtype": ""})
+        table(file, "/curve_points", {"curve": ["PD1", "TR2"], "type": ["R2", "MIN"], "omega": [1.75, 1.5], "support_motion.amplitude": [0.35, 0.3]})
+
+
+def test_periodic_figures(folder):
+    path = os.path.join(folder, "exact.h5")
+    periodic(path)
+    check_figures(path, ["response", "harmonics", "multipliers", "orbits", "chart"])
+
+
+def compared(path):
+    """Three levels, a sweep, three points of which two are alone, a map that is trusted up to its second row."""
+    with h5py.File(path, "w") as file:
+        study(file, "compare")
+        file["study"].attrs["compare.tolerance"] = 0.1
+        omega = np.linspace(1, 2, 11)
+        for k, level in enumerate(("frozen", "complete", "exact")):
+            branch(file, f"{level}-IP1", omega, 0.1 * k + 0 * omega, omega + 0.1 * k, omega > 1.6)
+            file[f"branches/{level}-IP1"].attrs["level"] = level
+        table(file, "/sweep/up", {"omega": omega, "q1_h2": 0 * omega, "q2_h2": omega})
+        nan = float("nan")
+        table(file, "/compare/points", {
+            "kind": ["LP", "WH", "PD"], "branch": ["IP1"] * 3, "found": ["all", "only frozen", "only exact"], "omega_exact": [1.3, nan, 1.8],
+            "omega_frozen": [1.4, 1.6, nan], "omega_complete": [1.31, nan, nan], "omega_integrated": [1.3, nan, nan]})
+        x, y = np.meshgrid(omega, [0.1, 0.2, 0.3, 0.4])
+        table(file, "/compare/map", {"omega": x.ravel(), "support_motion.amplitude": y.ravel(), "error": (0.4 * y * x).ravel(),
+                                     "amplitude": x.ravel(), "same_kinds": (x < 1.8).astype(float).ravel()})
+        file["compare"].attrs.update({"trusted_up_to": 0.2, "sentence": "trust the averaged curve below U = 0.2"})
+
+
+def test_compare_figures(folder):
+    path = os.path.join(folder, "levels.h5")
+    compared(path)
+    check_figures(path, ["response", "points", "map"], most=0.8)  # a map is coloured all over
+
+
 def test_truncated(folder):
     path = os.path.join(folder, "whole.h5")
     superharmonic(path)
