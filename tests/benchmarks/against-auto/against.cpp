@@ -3,6 +3,7 @@
 //     against coefficients                   the model in Fortran, 17 digits
 //     against walk                           Whirl's two branches once: what a whole process costs
 //     against compare AUTO WORK REPETITIONS  tables; WORK holds a directory with fort.2 (and fort.3) for each run of the program AUTO
+//     against orbits AUTO WORK REPETITIONS   the same for exact periodic motions: in-plane branch, multipliers and events on both sides
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <spawn.h>
@@ -19,6 +20,7 @@
 
 #include "continuation/walker.hpp"
 #include "models/closed_forms.hpp"
+#include "models/harmonic_balance.hpp"
 #include "models/superharmonic.hpp"
 
 using namespace whirl;
@@ -106,7 +108,7 @@ Curve curve_of(const Branch& b) {
 
 /// AUTO's fort.7: a line for each point, also for each special one.
 Curve read_diagram(const std::filesystem::path& file) {
-  const std::map<int, std::string> letters{{1, "BP"}, {2, "LP"}, {3, "HB"}, {-9, "MX"}};
+  const std::map<int, std::string> letters{{1, "BP"}, {2, "LP"}, {3, "HB"}, {5, "LP"}, {6, "BP"}, {7, "PD"}, {8, "TR"}, {-9, "MX"}};
   Curve c;
   std::ifstream in(file);
   for (std::string text; std::getline(in, text);) {
@@ -218,6 +220,37 @@ void compare(const std::string& program, const std::filesystem::path& work, int 
   }
 }
 
+// In-plane periodic motions, omega = 1.4 to 2 rad/s. WORK/sweep holds AUTO's run from the orbit at 1.4 rad/s, WORK/load how it got there.
+void compare_orbits(const std::string& program, const std::filesystem::path& work, int repetitions) {
+  constexpr int harmonics = 20;
+  const HarmonicBalance hb = stay_harmonic_balance(stay, {Lens("omega")}, {.harmonics = harmonics});
+  const WalkOptions options{.lower = 1.4, .upper = 2.0};
+  const Vector start = newton(hb, hb.linear_response(Vector::Constant(1, options.lower))).x;
+  std::vector<double> theirs, ours;
+  Branch b;
+  for (int i = 0; i < repetitions; ++i) {
+    theirs.push_back(time_process(work / "sweep", {program}));
+    const double begin = cpu_microseconds();
+    b = Walker(hb, options).walk(start);
+    ours.push_back(cpu_microseconds() - begin);
+  }
+  double truncation = 0.0;
+  for (int i = 0; i < b.points(); ++i) truncation = std::max(truncation, hb.truncation(b.u(i), b.tangent(i)).error);
+  const Curve auto_curve = read_diagram(work / "sweep" / "fort.7");
+  const double a = median(theirs) / auto_curve.points, w = median(ours) / b.points();
+  fmt::print("\nExact periodic motions in plane, U = 0.5 m, omega = {} to {} rad/s, with multipliers and events; processor time, medians of {}\n",
+             options.lower, options.upper, repetitions);
+  fmt::print(
+      "AUTO (60 intervals of 4, tolerances 1e-9): {} points, {:.0f} us each. Whirl ({} harmonics, truncation {:.1e}): {} points, {:.0f} us each. "
+      "Ratio {:.1f}.\n\n",
+      auto_curve.points, a, harmonics, truncation, b.points(), w, a / w);
+  fmt::print("{:<6}{:>16}{:>16}{:>12}\n", "type", "AUTO", "Whirl", "difference");
+  for (const auto& s : b.special)
+    for (const auto& t : auto_curve.special)
+      if (t.type == to_string(s.type) && std::abs(t.omega - s.u[hb.size()]) < 1e-4)
+        fmt::print("{:<6}{:>16.10f}{:>16.10f}{:>12.1e}\n", t.type, t.omega, s.u[hb.size()], t.omega - s.u[hb.size()]);
+}
+
 }  // namespace
 
 int main(int argc, char** argv) try {
@@ -229,8 +262,10 @@ int main(int argc, char** argv) try {
     if (whirl.whirling().points() < 2) return 1;
   } else if (what == "compare" && argc == 5) {
     compare(argv[2], argv[3], std::stoi(argv[4]), std::filesystem::canonical(argv[0]));
+  } else if (what == "orbits" && argc == 5) {
+    compare_orbits(argv[2], argv[3], std::stoi(argv[4]));
   } else {
-    fmt::print(stderr, "usage: against coefficients | walk | compare AUTO WORK REPETITIONS\n");
+    fmt::print(stderr, "usage: against coefficients | walk | compare AUTO WORK REPETITIONS | orbits AUTO WORK REPETITIONS\n");
     return 2;
   }
 } catch (const std::exception& e) {
