@@ -31,14 +31,16 @@ Flips flips_of(const CoordinateReflection& r, int n) {
 }
 
 // Do signs, and a shift by half the base period where asked for, leave every equation as it is?
-bool symmetric(const ModalSystem<double>& system, int nu, const Flips& flips, bool shifted) {
+// `as_it_is`: terms and forces that vanish in this system do not count; a model may list what no free parameter wakes.
+bool symmetric(const ModalSystem<double>& system, int nu, const Flips& flips, bool shifted, bool as_it_is = false) {
   const auto odd = [&](int h) { return shifted && (h * nu) % 2 != 0; };
   for (const auto& t : system.terms) {
     bool sign = odd(t.cos_harmonic);
     for (int a = 0; a < t.degree; ++a) sign ^= flips[at(t.factor[at(a)])];
-    if (sign != flips[at(t.equation)]) return false;
+    if (sign != flips[at(t.equation)] && !(as_it_is && t.coefficient == 0.0)) return false;
   }
-  return std::all_of(system.forces.begin(), system.forces.end(), [&](const auto& f) { return odd(f.harmonic) == flips[at(f.equation)]; });
+  return std::all_of(system.forces.begin(), system.forces.end(),
+                     [&](const auto& f) { return odd(f.harmonic) == flips[at(f.equation)] || (as_it_is && f.amplitude == 0.0); });
 }
 
 Vector signs_of(const Ansatz& ansatz, const Flips& flips, bool shifted) {
@@ -202,7 +204,8 @@ std::vector<Reflection> reflections_of(const Ansatz& ansatz, const ModalSystem<d
   std::vector<Flips> group = {Flips(at(n), false)};  // of the coordinate reflections
   for (const auto& r : given) {
     const Flips flips = flips_of(r, n);
-    if (!symmetric(system, ansatz.nu, flips, false)) throw std::invalid_argument(fmt::format("the equations lack the reflection \"{}\"", r.subtype));
+    if (!symmetric(system, ansatz.nu, flips, false, true))
+      throw std::invalid_argument(fmt::format("the equations lack the reflection \"{}\"", r.subtype));
     add(flips, false, r.subtype);
     const std::size_t known = group.size();
     for (std::size_t i = 0; i < known && known < 8; ++i) {
