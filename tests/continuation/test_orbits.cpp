@@ -86,7 +86,7 @@ TEST_CASE("orbits: every special point of the Oresund stay's exact motions, doub
   CHECK(net.network(1).branches()[2].born_at == "DIP1:BP1");
 }
 
-TEST_CASE("orbits: special points of the full coupling, each with its multiplier integrated") {
+TEST_CASE("orbits: special points of the full coupling, each with its multiplier integrated", "[slow]") {
   const HarmonicBalance hb = stay_harmonic_balance(oresund(), {Lens("omega")}, {.harmonics = 24}, Terms::full);
   const OrbitNetwork net = whole(hb, 1.05, 2.4, 0);
   compare(net.network(0), {{"IP1", "LP", "", 1.11978558563, 0, 1},
@@ -175,7 +175,7 @@ TEST_CASE("orbits: Jacobian of the torus system against differences") {
   }
 }
 
-TEST_CASE("orbits: thresholds in (omega, U) of whirling, folds and both period doublings", "[published]") {
+TEST_CASE("orbits: thresholds in (omega, U) of whirling, folds and both period doublings", "[published][slow]") {
   const HarmonicBalance hb = stay_harmonic_balance(oresund(), {Lens("omega")}, {.harmonics = 16});
   const HarmonicBalance hb2 = stay_harmonic_balance(oresund(), {Lens("omega"), Lens("support_motion.amplitude")}, {.harmonics = 16});
   const OrbitNetwork net = whole(hb, 1.2, 2.3, 0);
@@ -254,7 +254,7 @@ TEST_CASE("orbits: the least whirling amplitude, its curve solved for U at held 
   CHECK(nearest < 1e-10);  // CVODE at 1e-13 over a period
 }
 
-TEST_CASE("orbits: a curve of torus points in (omega, damping)") {
+TEST_CASE("orbits: a curve of torus points in (omega, damping)", "[slow]") {
   const HarmonicBalance hb = stay_harmonic_balance(oresund(), {Lens("omega")}, {.harmonics = 14});
   const HarmonicBalance hb2 = stay_harmonic_balance(oresund(), {Lens("omega"), Lens("damping")}, {.harmonics = 14});
   const OrbitNetwork net = whole(hb, 1.5, 1.9, 0);

@@ -53,7 +53,7 @@ double omega_of(const ResultReader& file, const std::string& branch, const std::
 
 }  // namespace
 
-TEST_CASE("periodic: the Oresund stay about its whirling point, motions checked by integration") {
+TEST_CASE("periodic: the Oresund stay about its whirling point, motions checked by integration", "[slow]") {
   const fs::path result = scratch("periodic.h5");
   const Run r = run("run " + example + "oresund-periodic.toml -o " + result.string() +
                     " --quiet --set continuation.range=[1.5,1.7] --set verification.omega=[1.65] --set second.range=[] --set seeds.grid=3 --set "
@@ -115,7 +115,7 @@ TEST_CASE("periodic: bad input is one line and leaves nothing behind") {
   refused("continuation.parameter=omegaa", "did you mean omega");
 }
 
-TEST_CASE("compare: every special point matched or told to be alone, and a sentence") {
+TEST_CASE("compare: every special point matched or told to be alone, and a sentence", "[slow]") {
   const fs::path result = scratch("compare.h5");
   const Run r = run("run " + example + "oresund-compare.toml -o " + result.string() +
                     " --set continuation.range=[1.5,1.75] --set sweep.points=0 --set map.values=[0.05,0.3] --set map.points=9 --set seeds.grid=5");
