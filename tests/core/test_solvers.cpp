@@ -67,7 +67,7 @@ TEST_CASE("CVODE integrates an oscillator to its tolerance, both methods") {
   }
 }
 
-TEST_CASE("an integration that blows up says so; exceptions pass through") {
+TEST_CASE("an integration that blows up says so, exceptions pass through") {
   Integrator run([](double, std::span<const double> y, std::span<double> d) { d[0] = y[0] * y[0]; }, 0.0, Vector::Ones(1), {.max_steps = 2000});
   CHECK_FALSE(run.advance(2.0));
   CHECK_THAT(run.why(), Catch::Contains("CVODE stopped"));

@@ -199,7 +199,7 @@ TEST_CASE("the stay at 1.65 rad/s: integrated harmonics of the whirling motion, 
   CHECK(std::abs(by_cvode.harmonic(1, 2.0)) == Approx(std::abs(m.harmonic(1, 2.0))).epsilon(1e-8));
 }
 
-TEST_CASE("period two out of plane and in plane; the low motion is unstable between 1.998 and 2.182 rad/s", "[published]") {
+TEST_CASE("period two out of plane and in plane, the low motion is unstable between 1.998 and 2.182 rad/s", "[published]") {
   AttractorFinder finder(stay(2.15));
   const Settled coupled = finder.settle(point({3, 0, 0, 0}), AttractorSet()), planar = finder.settle(point({10, 10, 0, 0}), AttractorSet());
   REQUIRE((coupled.fresh && planar.fresh));
@@ -258,7 +258,7 @@ TEST_CASE("Ueda's attractor is chaotic with the published exponent", "[published
   CHECK(set.find(again) == first);  // one attractor, not one per start
 }
 
-TEST_CASE("a motion that grows without bound is diverging; misuse throws") {
+TEST_CASE("a motion that grows without bound is diverging, misuse throws") {
   const auto soft = duffing(0.05, 1.0, -1.0, 0.1, 0.5);
   AttractorFinder finder(soft);
   CHECK(finder.settle(point({5.0, 0.0}), AttractorSet()).kind == MotionKind::diverging);

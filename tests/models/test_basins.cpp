@@ -95,7 +95,7 @@ TEST_CASE("a basin map of the stay: every cell is where CVODE goes") {
   }
 }
 
-TEST_CASE("starts in an invariant plane are pushed off it; axes may be velocities; misuse throws") {
+TEST_CASE("starts in an invariant plane are pushed off it, axes may be velocities, misuse throws") {
   BasinOptions o;
   o.x = {1, -2, 2, 3};
   o.y = {3, -2, 2, 3};  // q2, q2': q1 = 0 throughout

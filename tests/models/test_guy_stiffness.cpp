@@ -360,7 +360,7 @@ TEST_CASE("limits: hanging vertically, deep slack, level", "[slow]") {
     }
 }
 
-TEST_CASE("the classical closed form is not passive either; the completed one is") {
+TEST_CASE("the classical closed form is not passive either, the completed one is") {
   for (const Statics& rest : {oklahoma_rest(), davenport_rest()}) {
     const ClosedStiffness closed(rest);
     const double w1 = closed.string_frequency();

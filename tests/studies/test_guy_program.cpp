@@ -105,7 +105,7 @@ TEST_CASE("okc-guy-stiffness and davenport-guy-stiffness: curves, poles, zeros, 
   }
 }
 
-TEST_CASE("mast-level: ice and cold tighten a guy; three guys are isotropic") {
+TEST_CASE("mast-level: ice and cold tighten a guy, three guys are isotropic") {
   const Folder f;
   const Ran s = program(f, "run " + input("mast-level") + " -q -o s.h5"),
             r = program(f, "run " + input("mast-level-stiffness") + " --set stiffness.points=50 -q -o k.h5");
