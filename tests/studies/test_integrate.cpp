@@ -73,7 +73,7 @@ TEST_CASE("integrate: the published motions, their tables, JSON and CSV") {
   CHECK(fs::exists(f.path / "o-csv" / "integrate-attractors.csv"));
 }
 
-TEST_CASE("integrate: sweeps mark their jumps, another parameter may be swept") {
+TEST_CASE("integrate: sweeps mark their jumps, another parameter may be swept", "[slow]") {
   const Folder f;
   const Ran r = program(f, "run " + folder +
                                "oresund-integrate.toml --set integrate.omega=[] --set sweep.range=[1.69,1.85] --set sweep.points=9 "
@@ -103,7 +103,7 @@ TEST_CASE("integrate: sweeps mark their jumps, another parameter may be swept") 
   CHECK(q1[4] > 0.05);
 }
 
-TEST_CASE("basins: shares, numbers, symmetry, accuracy, the same with one thread") {
+TEST_CASE("basins: shares, numbers, symmetry, accuracy, the same with one thread", "[slow]") {
   const Folder f;
   const Ran r = program(f, basins + "--set basins.check_share=0.2 --json -o o.h5");
   INFO(r.err);
