@@ -154,14 +154,30 @@ void SingularSystem::do_residual(In y, Out r) const {
   spread(y);
   base_.linearise(u_, r_, j_);
   solve_bordered();
-  for (std::size_t i = 0; i < state_.size(); ++i) r[static_cast<int>(i)] = r_[state_[i]];
-  r[static_cast<int>(state_.size())] = v_[static_cast<int>(block_.size())];
+  fill_residual(y, r);
 }
 
 void SingularSystem::do_jacobian(In y, MatrixOut j) const {
   spread(y);
   base_.jacobian(u_, j_);
   solve_bordered();
+  fill_jacobian(y, j);
+}
+
+void SingularSystem::do_linearise(In y, Out r, MatrixOut j) const {
+  spread(y);
+  base_.linearise(u_, r_, j_);
+  solve_bordered();
+  fill_residual(y, r);
+  fill_jacobian(y, j);
+}
+
+void SingularSystem::fill_residual(In, Out r) const {
+  for (std::size_t i = 0; i < state_.size(); ++i) r[static_cast<int>(i)] = r_[state_[i]];
+  r[static_cast<int>(state_.size())] = v_[static_cast<int>(block_.size())];
+}
+
+void SingularSystem::fill_jacobian(In, MatrixOut j) const {
   j.setZero();
   gather_rows(j_, 0, j);
   embed(v_.head(static_cast<int>(block_.size())), block_, full_);
@@ -235,16 +251,32 @@ void BranchPointSystem::do_residual(In y, Out r) const {
   spread(y);
   base_.linearise(u_, r_, j_);
   solve_bordered();
-  const int n = base_.size();
-  r.head(n) = r_ + y[n + 1] * b_;
-  r[n] = v_(n + 1, 0);
-  r[n + 1] = v_(n + 1, 1);
+  fill_residual(y, r);
 }
 
 void BranchPointSystem::do_jacobian(In y, MatrixOut j) const {
   spread(y);
   base_.jacobian(u_, j_);
   solve_bordered();
+  fill_jacobian(y, j);
+}
+
+void BranchPointSystem::do_linearise(In y, Out r, MatrixOut j) const {
+  spread(y);
+  base_.linearise(u_, r_, j_);
+  solve_bordered();
+  fill_residual(y, r);
+  fill_jacobian(y, j);
+}
+
+void BranchPointSystem::fill_residual(In y, Out r) const {
+  const int n = base_.size();
+  r.head(n) = r_ + y[n + 1] * b_;
+  r[n] = v_(n + 1, 0);
+  r[n + 1] = v_(n + 1, 1);
+}
+
+void BranchPointSystem::fill_jacobian(In, MatrixOut j) const {
   const int n = base_.size();
   j.setZero();
   gather_rows(j_, 1, j);
@@ -277,6 +309,11 @@ HopfSystem::HopfSystem(const Problem& base, Indices state, Indices block, In u)
     : AugmentedSystem(base, std::move(state), 1), block_(std::move(block)), full_(base.size() + base.parameters()) {
   const int m = static_cast<int>(block_.size());
   bordered_.resize(m + 2, m + 2);
+  a_.resize(m, m);
+  x_.resize(m + 2, 2);
+  y_.resize(m + 2, 2);
+  against_.resize(m);
+  four_.resize(4, size() + parameters());
   for (int i = 0; i < u_.size(); ++i)
     if (column(i) >= 0) u_[i] = u[i];
   base_.jacobian(u_, j_);
@@ -304,39 +341,79 @@ void HopfSystem::update_borders(In y) {
   spread(y);
   base_.jacobian(u_, j_);
   const int m = static_cast<int>(block_.size());
-  const Matrix a = block_of(j_, block_), q = a * a + kappa(y) * Matrix::Identity(m, m);
-  const Eigen::JacobiSVD<Matrix> svd(q, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  left_ = svd.matrixU().rightCols(2);
-  right_ = svd.matrixV().rightCols(2);
-  choose_entries(y);
+  if (m + 2 > DenseLu::small || !null_planes(kappa(y))) {
+    const Matrix a = block_of(j_, block_), q = a * a + kappa(y) * Matrix::Identity(m, m);
+    const Eigen::JacobiSVD<Matrix> svd(q, Eigen::ComputeFullU | Eigen::ComputeFullV);
+    left_ = svd.matrixU().rightCols(2);
+    right_ = svd.matrixV().rightCols(2);
+  }
+  solve_bordered(kappa(y));
+  choose_entries();
 }
 
-// Of the four entries of G, two whose gradients are the least parallel.
-void HopfSystem::choose_entries(In y) {
-  Matrix four = Matrix::Zero(4, size() + parameters());
-  gradients(y, four);
-  const Eigen::ColPivHouseholderQR<Matrix> qr(four.transpose());
-  entry_[0] = qr.colsPermutation().indices()[0];
-  entry_[1] = qr.colsPermutation().indices()[1];
+// Planes that A^2 + kappa I, nearly of rank m - 2, almost annihilates from the left and from the right: two rounds of solving with the borders so
+// far.
+bool HopfSystem::null_planes(double kappa) {
+  const int m = static_cast<int>(block_.size());
+  left_.resize(m, 2);
+  right_.resize(m, 2);
+  for (int i = 0; i < m; ++i)  // no symmetry of a model is likely to be orthogonal to these
+    for (int s = 0; s < 2; ++s) {
+      left_(i, s) = std::cos(1.7 * i + 1.9 * s) + 0.3 * s;
+      right_(i, s) = std::sin(2.3 * i + 0.4 + 1.3 * s) + 0.2;
+    }
+  const auto orthonormal = [](Matrix& q) {
+    q.col(0) /= q.col(0).norm();
+    q.col(1) -= q.col(0).dot(q.col(1)) * q.col(0);
+    q.col(1) /= q.col(1).norm();
+    return q.allFinite();
+  };
+  for (int round = 0; round < 3; ++round) {
+    if (!orthonormal(left_) || !orthonormal(right_)) return false;
+    solve_bordered(kappa);
+    if (!(x_.topRows(m).norm() < 1e8) || !(y_.topRows(m).norm() < 1e8)) return false;
+    right_ = x_.topRows(m);
+    left_ = y_.topRows(m);
+  }
+  return orthonormal(left_) && orthonormal(right_);
+}
+
+// Of the four entries of G, two whose gradients are the least parallel: the longest, and the longest of what is left across it.
+void HopfSystem::choose_entries() {
+  gradients();
+  int first = 0;
+  for (int i = 1; i < 4; ++i)
+    if (four_.row(i).squaredNorm() > four_.row(first).squaredNorm()) first = i;
+  const double size = four_.row(first).squaredNorm();
+  int second = first == 0 ? 1 : 0;
+  double longest = -1.0;
+  for (int i = 0; i < 4; ++i) {
+    if (i == first) continue;
+    const double along = four_.row(i).dot(four_.row(first)), across = four_.row(i).squaredNorm() - along * along / size;
+    if (across > longest) {
+      longest = across;
+      second = i;
+    }
+  }
+  entry_[0] = first;
+  entry_[1] = second;
 }
 
 void HopfSystem::solve_bordered(double kappa) const {
   const int m = static_cast<int>(block_.size());
-  a_ = block_of(j_, block_);
+  for (int c = 0; c < m; ++c)
+    for (int r = 0; r < m; ++r) a_(r, c) = j_(block_[std::size_t(r)], block_[std::size_t(c)]);
   bordered_.setZero();
-  bordered_.topLeftCorner(m, m) = a_ * a_;
+  bordered_.topLeftCorner(m, m).noalias() = a_.lazyProduct(a_);
   for (int i = 0; i < m; ++i) bordered_(i, i) += kappa;
   bordered_.topRightCorner(m, 2) = left_;
   bordered_.bottomLeftCorner(2, m) = right_.transpose();
   lu_.compute(bordered_);
-  Matrix e = Matrix::Zero(m + 2, 2);
-  e(m, 0) = e(m + 1, 1) = 1.0;
-  x_.resize(m + 2, 2);
-  y_.resize(m + 2, 2);
-  for (int i = 0; i < 2; ++i) {
-    lu_.solve(e.col(i), x_.col(i));
-    lu_.solve_transposed(e.col(i), y_.col(i));
-  }
+  x_.setZero();
+  x_(m, 0) = x_(m + 1, 1) = 1.0;
+  y_ = x_;
+  lu_.solve_two(x_.col(0), x_.col(1), x_.col(0), x_.col(1));
+  for (int i = 0; i < 2; ++i) lu_.solve_transposed(y_.col(i), y_.col(i));
   g_ = x_.bottomRows(2);
 }
 
@@ -344,42 +421,59 @@ void HopfSystem::do_residual(In y, Out r) const {
   spread(y);
   base_.linearise(u_, r_, j_);
   solve_bordered(kappa(y));
+  fill_residual(y, r);
+}
+
+void HopfSystem::do_jacobian(In y, MatrixOut j) const {
+  spread(y);
+  base_.jacobian(u_, j_);
+  solve_bordered(kappa(y));
+  fill_jacobian(y, j);
+}
+
+void HopfSystem::do_linearise(In y, Out r, MatrixOut j) const {
+  spread(y);
+  base_.linearise(u_, r_, j_);
+  solve_bordered(kappa(y));
+  fill_residual(y, r);
+  fill_jacobian(y, j);
+}
+
+void HopfSystem::fill_residual(In, Out r) const {
   const int s = static_cast<int>(state_.size());
   for (int i = 0; i < s; ++i) r[i] = r_[state_[std::size_t(i)]];
   for (int e = 0; e < 2; ++e) r[s + e] = g_(entry_[e] % 2, entry_[e] / 2);
 }
 
-// dG_ij = -Y_i' (dA A + A dA + dkappa) X_j
-void HopfSystem::gradients(In y, MatrixOut four) const {
-  spread(y);
-  base_.jacobian(u_, j_);
-  solve_bordered(kappa(y));
-  const int m = static_cast<int>(block_.size()), s = static_cast<int>(state_.size());
-  const Matrix X = x_.topRows(m), Y = y_.topRows(m), AX = a_ * X, AtY = a_.transpose() * Y;
-  four.setZero();
-  for (int jx = 0; jx < 2; ++jx)
-    for (int pass = 0; pass < 2; ++pass) {  // dA (A X_j) against Y_i, dA X_j against A'Y_i
-      embed(pass == 0 ? AX.col(jx) : X.col(jx), block_, full_);
-      base_.second(u_, full_, h_);
-      for (int i = 0; i < 2; ++i)
-        for (int c = 0; c < h_.cols(); ++c)
-          if (column(c) >= 0) {
-            double dg = 0.0;
-            for (int k = 0; k < m; ++k) dg -= (pass == 0 ? Y(k, i) : AtY(k, i)) * h_(block_[std::size_t(k)], c);
-            four(i + 2 * jx, column(c)) += dg;
-          }
-    }
-  for (int jx = 0; jx < 2; ++jx)
-    for (int i = 0; i < 2; ++i) four(i + 2 * jx, s + 1) = -Y.col(i).dot(X.col(jx));
-}
-
-void HopfSystem::do_jacobian(In y, MatrixOut j) const {
-  Matrix four(4, size() + parameters());
-  gradients(y, four);
+void HopfSystem::fill_jacobian(In, MatrixOut j) const {
+  gradients();
   j.setZero();
   gather_rows(j_, 1, j);
   const int s = static_cast<int>(state_.size());
-  for (int e = 0; e < 2; ++e) j.row(s + e) = four.row(entry_[e]);
+  for (int e = 0; e < 2; ++e) j.row(s + e) = four_.row(entry_[e]);
+}
+
+// dG_ij = -Y_i' (dA A + A dA + dkappa) X_j
+void HopfSystem::gradients() const {
+  const int m = static_cast<int>(block_.size()), s = static_cast<int>(state_.size());
+  four_.setZero();
+  for (int jx = 0; jx < 2; ++jx)
+    for (int pass = 0; pass < 2; ++pass) {  // dA (A X_j) against Y_i, dA X_j against A'Y_i
+      full_.setZero();
+      for (int i = 0; i < m; ++i) full_[block_[std::size_t(i)]] = pass == 0 ? a_.row(i).dot(x_.col(jx).head(m)) : x_(i, jx);
+      base_.second(u_, full_, h_);
+      for (int i = 0; i < 2; ++i) {
+        for (int k = 0; k < m; ++k) against_[k] = pass == 0 ? y_(k, i) : a_.col(k).dot(y_.col(i).head(m));
+        for (int c = 0; c < h_.cols(); ++c)
+          if (column(c) >= 0) {
+            double dg = 0.0;
+            for (int k = 0; k < m; ++k) dg -= against_[k] * h_(block_[std::size_t(k)], c);
+            four_(i + 2 * jx, column(c)) += dg;
+          }
+      }
+    }
+  for (int jx = 0; jx < 2; ++jx)
+    for (int i = 0; i < 2; ++i) four_(i + 2 * jx, s + 1) = -y_.col(i).head(m).dot(x_.col(jx).head(m));
 }
 
 // --------------------------------------------------------------------------------------------------------------- PeakSystem
@@ -441,15 +535,31 @@ void PeakSystem::do_residual(In y, Out r) const {
   spread(y);
   base_.linearise(u_, r_, j_);
   solve_bordered();
-  const int s = static_cast<int>(state_.size());
-  for (int i = 0; i < s; ++i) r[i] = r_[state_[std::size_t(i)]];
-  r[s] = gradient_.dot(v_);
+  fill_residual(y, r);
 }
 
 void PeakSystem::do_jacobian(In y, MatrixOut j) const {
   spread(y);
   base_.jacobian(u_, j_);
   solve_bordered();
+  fill_jacobian(y, j);
+}
+
+void PeakSystem::do_linearise(In y, Out r, MatrixOut j) const {
+  spread(y);
+  base_.linearise(u_, r_, j_);
+  solve_bordered();
+  fill_residual(y, r);
+  fill_jacobian(y, j);
+}
+
+void PeakSystem::fill_residual(In, Out r) const {
+  const int s = static_cast<int>(state_.size());
+  for (int i = 0; i < s; ++i) r[i] = r_[state_[std::size_t(i)]];
+  r[s] = gradient_.dot(v_);
+}
+
+void PeakSystem::fill_jacobian(In, MatrixOut j) const {
   const int s = static_cast<int>(state_.size());
   j.setZero();
   gather_rows(j_, 0, j);

@@ -67,6 +67,9 @@ class SingularSystem : public AugmentedSystem {
  private:
   void do_residual(In y, Out r) const override;
   void do_jacobian(In y, MatrixOut j) const override;
+  void do_linearise(In y, Out r, MatrixOut j) const override;
+  void fill_residual(In y, Out r) const;
+  void fill_jacobian(In y, MatrixOut j) const;
   void solve_bordered() const;
   Indices block_;  // M
   Vector b_, c_;
@@ -86,6 +89,9 @@ class BranchPointSystem : public AugmentedSystem {
  private:
   void do_residual(In y, Out r) const override;
   void do_jacobian(In y, MatrixOut j) const override;
+  void do_linearise(In y, Out r, MatrixOut j) const override;
+  void fill_residual(In y, Out r) const;
+  void fill_jacobian(In y, MatrixOut j) const;
   void solve_bordered() const;
   Vector b_;
   Matrix c_;
@@ -104,16 +110,20 @@ class HopfSystem : public AugmentedSystem {
  private:
   void do_residual(In y, Out r) const override;
   void do_jacobian(In y, MatrixOut j) const override;
+  void do_linearise(In y, Out r, MatrixOut j) const override;
+  void fill_residual(In y, Out r) const;
+  void fill_jacobian(In y, MatrixOut j) const;
   void solve_bordered(double kappa) const;
-  void choose_entries(In y);
-  void gradients(In y, MatrixOut four) const;  // rows dG00, dG10, dG01, dG11
+  bool null_planes(double kappa);
+  void choose_entries();
+  void gradients() const;  // into four_, rows dG00, dG10, dG01, dG11
   Indices block_;
   Matrix left_, right_;  // W, V
   double kappa0_ = 0.0;
   int entry_[2] = {0, 1};
-  mutable Matrix a_, bordered_, x_, y_, g_;
+  mutable Matrix a_, bordered_, x_, y_, g_, four_;
   mutable DenseLu lu_;
-  mutable Vector full_;
+  mutable Vector full_, against_;
 };
 
 /// a(x) = 1/2 x'Qx + l'x of the unknowns x: a coordinate, or half the square of an amplitude.
@@ -135,6 +145,9 @@ class PeakSystem : public AugmentedSystem {
  private:
   void do_residual(In y, Out r) const override;
   void do_jacobian(In y, MatrixOut j) const override;
+  void do_linearise(In y, Out r, MatrixOut j) const override;
+  void fill_residual(In y, Out r) const;
+  void fill_jacobian(In y, MatrixOut j) const;
   void solve_bordered() const;
   QuadraticForm form_;
   Vector c_;

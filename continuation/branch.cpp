@@ -56,27 +56,26 @@ const char* to_string(StopReason reason) {
   return "?";
 }
 
-Branch::Branch(int n, int spectrum_size, int capacity)
-    : u_(n + 1, capacity),
-      tangent_(n + 1, capacity),
-      eigenvalues_(spectrum_size, spectrum_size > 0 ? capacity : 0),
-      arclength_(capacity),
-      residual_(capacity),
-      step_(capacity),
-      iterations_(capacity),
-      unstable_(capacity) {}
+Branch::Branch(int n, int spectrum_size, int capacity) : n_(n), spectrum_(spectrum_size), capacity_(capacity) {
+  constexpr int first = 12000;  // numbers: below what a C library takes from the system each time anew
+  const int rows = 2 * (n + 1) + 2 * spectrum_size + scalars;
+  record_.resize(rows, std::min(capacity, std::max(64, first / rows)));
+}
 
 void Branch::append(In u, In tangent, double arclength, double residual, double step, int iterations, int unstable,
                     const Eigen::VectorXcd* eigenvalues) {
   assert(points_ < capacity());
-  u_.col(points_) = u;
-  tangent_.col(points_) = tangent;
-  if (has_spectrum() && eigenvalues) eigenvalues_.col(points_) = *eigenvalues;
-  arclength_[points_] = arclength;
-  residual_[points_] = residual;
-  step_[points_] = step;
-  iterations_[points_] = iterations;
-  unstable_[points_] = unstable;
+  if (points_ == record_.cols()) record_.conservativeResize(Eigen::NoChange, std::min<Eigen::Index>(capacity_, 2 * record_.cols()));
+  double* to = record_.data() + points_ * record_.rows();
+  to = std::copy_n(u.data(), n_ + 1, to);
+  to = std::copy_n(tangent.data(), n_ + 1, to);
+  if (has_spectrum() && eigenvalues) std::copy_n(reinterpret_cast<const double*>(eigenvalues->data()), 2 * spectrum_, to);
+  to += 2 * spectrum_;
+  to[0] = arclength;
+  to[1] = residual;
+  to[2] = step;
+  to[3] = iterations;
+  to[4] = unstable;
   ++points_;
 }
 
@@ -85,7 +84,10 @@ void Branch::sort_special() {
 }
 
 Branch Branch::reversed() const {
-  Branch r(size(), spectrum_size(), points_);  // not a copy: the storage may be far larger than what is used
+  Branch r(n_, spectrum_, points_);
+  r.record_ = record_.leftCols(points_).rowwise().reverse();
+  r.record_.middleRows(n_ + 1, n_ + 1) *= -1.0;
+  r.record_.row(2 * (n_ + 1) + 2 * spectrum_) *= -1.0;  // arclength
   r.points_ = points_;
   r.special = special;
   r.start_reason = start_reason;
@@ -94,17 +96,6 @@ Branch Branch::reversed() const {
   r.born_at = born_at;
   r.isola = isola;
   r.active_reflections = active_reflections;
-  for (int i = 0; i < points_; ++i) {
-    const int j = points_ - 1 - i;
-    r.u_.col(i) = u_.col(j);
-    r.tangent_.col(i) = -tangent_.col(j);
-    if (has_spectrum()) r.eigenvalues_.col(i) = eigenvalues_.col(j);
-    r.arclength_[i] = -arclength_[j];
-    r.residual_[i] = residual_[j];
-    r.step_[i] = step_[j];
-    r.iterations_[i] = iterations_[j];
-    r.unstable_[i] = unstable_[j];
-  }
   std::reverse(r.special.begin(), r.special.end());
   for (auto& s : r.special) {
     s.arclength = -s.arclength;
@@ -115,22 +106,17 @@ Branch Branch::reversed() const {
   return r;
 }
 
-Branch Branch::joined(const Branch& backward, const Branch& forward) {
-  const Branch first = backward.reversed();
-  const int shared = first.points() > 0 ? 1 : 0;  // the common first point stands once
-  Branch r(forward.size(), forward.spectrum_size(), first.points() - shared + forward.points());
-  const auto copy = [&r](const Branch& b, int from, int to) {
-    for (int i = from; i < to; ++i) {
-      Eigen::VectorXcd e;
-      if (b.has_spectrum()) e = b.eigenvalues(i);
-      r.append(b.u(i), b.tangent(i), b.arclength(i), b.residual(i), b.step(i), b.iterations(i), b.n_unstable(i), &e);
-    }
-  };
-  copy(first, 0, first.points() - shared);
-  copy(forward, 0, forward.points());
-  r.special = first.special;
+Branch Branch::joined(const Branch& backward, Branch forward) {
+  if (backward.points() <= 1 && backward.special.empty()) {  // nothing lies behind the common first point
+    forward.start_reason = backward.stop_reason;
+    return forward;
+  }
+  Branch r = backward.reversed();
+  const int shared = r.points() > 0 ? 1 : 0, first = r.points() - shared;
+  r.capacity_ = r.points_ = first + forward.points();
+  r.record_.conservativeResize(Eigen::NoChange, r.points_);
+  r.record_.rightCols(forward.points()) = forward.record_.leftCols(forward.points());
   r.special.insert(r.special.end(), forward.special.begin(), forward.special.end());
-  r.start_reason = first.start_reason;
   r.stop_reason = forward.stop_reason;
   r.name = forward.name;
   r.born_at = forward.born_at;

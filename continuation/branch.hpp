@@ -58,27 +58,29 @@ struct SpecialPoint {
   bool stable_after() const { return unstable_after == 0; }
 };
 
-/// Points of one branch. Storage for `capacity` points is taken in the constructor, none later.
+/// Points of one branch, at most `capacity` of them. Storage doubles when it is full; the first one holds some hundred points of a small problem.
 class Branch {
  public:
   Branch() = default;
   Branch(int n, int spectrum_size, int capacity);
 
   int points() const { return points_; }
-  int capacity() const { return static_cast<int>(arclength_.size()); }
-  int size() const { return static_cast<int>(u_.rows()) - 1; }
-  int spectrum_size() const { return static_cast<int>(eigenvalues_.rows()); }  ///< eigenvalues, or Floquet multipliers, of a point
-  bool has_spectrum() const { return eigenvalues_.rows() > 0; }
+  int capacity() const { return capacity_; }
+  int size() const { return n_; }
+  int spectrum_size() const { return spectrum_; }  ///< eigenvalues, or Floquet multipliers, of a point
+  bool has_spectrum() const { return spectrum_ > 0; }
 
-  auto u(int i) const { return u_.col(i); }
-  auto tangent(int i) const { return tangent_.col(i); }
-  double parameter(int i) const { return u_(u_.rows() - 1, i); }
-  auto eigenvalues(int i) const { return eigenvalues_.col(i); }
-  double arclength(int i) const { return arclength_[i]; }
-  double residual(int i) const { return residual_[i]; }
-  double step(int i) const { return step_[i]; }
-  int iterations(int i) const { return iterations_[i]; }
-  int n_unstable(int i) const { return unstable_[i]; }
+  Eigen::Map<const Vector> u(int i) const { return {column(i), n_ + 1}; }
+  Eigen::Map<const Vector> tangent(int i) const { return {column(i) + n_ + 1, n_ + 1}; }
+  double parameter(int i) const { return column(i)[n_]; }
+  Eigen::Map<const Eigen::VectorXcd> eigenvalues(int i) const {
+    return {reinterpret_cast<const std::complex<double>*>(column(i) + 2 * (n_ + 1)), spectrum_};
+  }
+  double arclength(int i) const { return scalar(i, 0); }
+  double residual(int i) const { return scalar(i, 1); }
+  double step(int i) const { return scalar(i, 2); }
+  int iterations(int i) const { return static_cast<int>(scalar(i, 3)); }
+  int n_unstable(int i) const { return static_cast<int>(scalar(i, 4)); }
 
   void append(In u, In tangent, double arclength, double residual, double step, int iterations, int unstable, const Eigen::VectorXcd* eigenvalues);
   /// Special points in order of arclength.
@@ -91,7 +93,7 @@ class Branch {
   /// This branch walked the other way: order of points and sense of tangents reversed.
   Branch reversed() const;
   /// `backward` (walked away from the common first point) followed by `forward`.
-  static Branch joined(const Branch& backward, const Branch& forward);
+  static Branch joined(const Branch& backward, Branch forward);
 
   std::vector<SpecialPoint> special;  ///< in order of arclength
   StopReason start_reason = StopReason::none, stop_reason = StopReason::none;
@@ -101,11 +103,14 @@ class Branch {
   std::vector<int> active_reflections;  ///< reflections of the problem that leave every point of this branch in place
 
  private:
-  Matrix u_, tangent_;
-  Eigen::MatrixXcd eigenvalues_;
-  Vector arclength_, residual_, step_;
-  Eigen::VectorXi iterations_, unstable_;
-  int points_ = 0;
+  static constexpr int scalars = 5;  // arclength, residual, step, iterations, unstable
+  const double* column(int i) const {
+    assert(i >= 0 && i < points_);
+    return record_.data() + i * record_.rows();
+  }
+  double scalar(int i, int which) const { return column(i)[2 * (n_ + 1) + 2 * spectrum_ + which]; }
+  int n_ = 0, spectrum_ = 0, capacity_ = 0, points_ = 0;
+  Matrix record_;  // a column a point: u, tangent, eigenvalues, scalars
 };
 
 }  // namespace whirl::continuation

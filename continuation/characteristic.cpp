@@ -3,12 +3,15 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace whirl::continuation {
 namespace {
 
 constexpr int most_steps = 10;
-constexpr double settled = 1e-11;  // of a step, relative: the next one is its square
+
+// Has a step of this relative size, after the one before it, come to rounding? Steps go on as squares: the next is size (size / previous)^2.
+bool settled(double size, double previous) { return size <= 1e-11 || size * (size / previous) * (size / previous) <= 1e-16; }
 
 }  // namespace
 
@@ -62,12 +65,14 @@ bool RealFactors::three(const Matrix& a, std::complex<double>* z) {
   const double c2 = -(a(0, 0) + a(1, 1) + a(2, 2));
   const double c1 = m00 + a(0, 0) * a(2, 2) - a(0, 2) * a(2, 0) + a(0, 0) * a(1, 1) - a(0, 1) * a(1, 0);
   const double c0 = -(a(0, 0) * m00 - a(0, 1) * m01 + a(0, 2) * m02), size = a.norm();
+  double previous = 1e-3;
   for (int i = 0; i < most_steps; ++i) {
     const double p = c2 + t_, q = c1 + t_ * p, f = c0 + t_ * q, slope = q + t_ * (p + t_);
     const double step = f / slope;
     t_ -= step;
     if (!std::isfinite(step)) return false;
-    if (std::abs(step) > settled * size) continue;
+    const double now = std::abs(step) / size, last = std::exchange(previous, now);
+    if (!settled(now, last)) continue;
     z[0] = t_;
     quadratic_roots(c2 + t_, c1 + t_ * (c2 + t_), z[1], z[2]);
     return true;
@@ -87,6 +92,8 @@ bool RealFactors::four(const Matrix& a, std::complex<double>* z) {
   const double c1 = -(a(1, 1) * k5 - a(1, 2) * k4 + a(1, 3) * k3 + a(0, 0) * k5 - a(0, 2) * k2 + a(0, 3) * k1 + a(3, 0) * s4 - a(3, 1) * s2 +
                       a(3, 3) * s0 + a(2, 0) * s3 - a(2, 1) * s1 + a(2, 2) * s0);
   const double c0 = s0 * k5 - s1 * k4 + s2 * k3 + s3 * k2 - s4 * k1 + s5 * k0, size = a.norm();
+  const double inverse_size = 1.0 / size;
+  double previous = 1e-3;
   for (int i = 0; i < most_steps; ++i) {  // Bairstow: the remainder R1 z + R0 of the division by z^2 + p z + q vanishes
     const double r = c3 - p_, s = c2 - q_ - p_ * r, R1 = c1 - p_ * s - q_ * r, R0 = c0 - q_ * s;
     const double R1_p = q_ - s - p_ * (p_ - r), R1_q = p_ - r, R0_p = -q_ * (p_ - r), R0_q = q_ - s;
@@ -95,7 +102,8 @@ bool RealFactors::four(const Matrix& a, std::complex<double>* z) {
     if (!std::isfinite(dp) || !std::isfinite(dq)) return false;
     p_ -= dp;
     q_ -= dq;
-    if (std::abs(dp) > settled * size || std::abs(dq) > settled * size * size) continue;
+    const double now = std::max(std::abs(dp), std::abs(dq) * inverse_size) * inverse_size, last = std::exchange(previous, now);
+    if (!settled(now, last)) continue;
     const double r_end = c3 - p_;
     quadratic_roots(p_, q_, z[0], z[1]);
     quadratic_roots(r_end, c2 - q_ - p_ * r_end, z[2], z[3]);

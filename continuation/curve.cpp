@@ -13,11 +13,15 @@ Curve::Curve(const Problem& f, Blocks blocks, const CurveOptions& options)
       weight_(Vector::Ones(f.size() + 1)),
       r_(f.size()),
       step_(Vector::Zero(f.size() + 1)),
+      normal_(Vector::Zero(f.size() + 1)),
       jacobian_(f.size(), f.size() + 1),
       whole_(blocks_.indices.size() == 1),
       state_(static_cast<int>(blocks_.indices[0].size())),
       solution_(state_ + 1),
       rhs_(state_ + 1),
+      refined_(state_ + 1),
+      last_(Vector::Unit(state_ + 1, state_)),
+      tangent_(state_ + 1),
       bordered_(state_ + 1, state_ + 1),
       lu_(state_ + 1) {
   if (f.parameters() != 1) throw std::invalid_argument("a curve needs exactly one free parameter");
@@ -42,75 +46,127 @@ void Curve::set_scales(double x_scale, double p_scale) {
 }
 
 // The bordered matrix of the coordinates that the symmetries leave: of the others r, steps and tangents are zero.
-void Curve::border(In normal) {
+void Curve::border() {
   const int n = f_.size();
   if (whole_) {
     bordered_.topRows(n) = jacobian_;
-    bordered_.row(n) = (normal.array() * weight_.array()).transpose();
+    bordered_.row(n) = normal_.transpose();
     return;
   }
   const Indices& even = blocks_.indices[0];
   for (int c = 0; c < state_; ++c) {
     const int column = even[static_cast<std::size_t>(c)];
     for (int r = 0; r < state_; ++r) bordered_(r, c) = jacobian_(even[static_cast<std::size_t>(r)], column);
-    bordered_(state_, c) = normal[column] * weight_[column];
+    bordered_(state_, c) = normal_[column];
   }
   for (int r = 0; r < state_; ++r) bordered_(r, state_) = jacobian_(even[static_cast<std::size_t>(r)], n);
-  bordered_(state_, state_) = normal[n] * weight_[n];
+  bordered_(state_, state_) = normal_[n];
 }
 
-// Solves the bordered system for rhs_, the answer in all coordinates.
-void Curve::solve_bordered(Out answer) {
-  if (whole_) return lu_.solve(rhs_, answer);
-  lu_.solve(rhs_, solution_);
-  answer.setZero();
-  for (int i = 0; i < state_; ++i) answer[blocks_.indices[0][static_cast<std::size_t>(i)]] = solution_[i];
-  answer[f_.size()] = solution_[state_];
+// An answer of the bordered system in all coordinates.
+void Curve::spread(const Vector& from, double scale, Out answer) const {
+  double* to = answer.data();
+  if (whole_) {
+    for (int i = 0; i <= state_; ++i) to[i] = scale * from[i];
+    return;
+  }
+  for (int i = 0; i < f_.size(); ++i) to[i] = 0.0;
+  for (int i = 0; i < state_; ++i) to[blocks_.indices[0][static_cast<std::size_t>(i)]] = scale * from[i];
+  to[f_.size()] = scale * from[state_];
+}
+
+// Of an answer of the bordered system.
+double Curve::length_of(const Vector& from) const {
+  double sum = 0.0;
+  for (int i = 0; i < state_; ++i) sum += from[i] * from[i];
+  return std::sqrt(sum * weight_[0] + from[state_] * from[state_] * weight_[f_.size()]);
+}
+
+// Of the bordered system for the correction at u.
+void Curve::right_side(In u, In anchor) {
+  for (int i = 0; i < state_; ++i) rhs_[i] = -r_[whole_ ? i : blocks_.indices[0][static_cast<std::size_t>(i)]];
+  double off = 0.0;
+  for (int i = 0; i < u.size(); ++i) off += (u[i] - anchor[i]) * normal_[i];
+  rhs_[state_] = -off;
 }
 
 Curve::Report Curve::correct(Out u, In normal, In anchor) {
-  const int n = f_.size();
   Report report;
   double previous = 0.0;
-  bool last = false;
+  normal_ = normal.array() * weight_.array();
   for (;;) {
     f_.linearise(u, r_, jacobian_);
     report.residual = r_.lpNorm<Eigen::Infinity>();
     if (!std::isfinite(report.residual)) return report;  // of the Jacobian: the step or the tangent is not finite then
-    border(normal);
-    lu_.compute(bordered_);
-    if (last) {
-      report.ok = true;
-      return report;
-    }
+    border();
+    if (report.iterations > 0 && settle(u, anchor, previous, report)) return report;
     if (report.iterations == options_.max_iterations) return report;
-    if (whole_) rhs_.head(n) = -r_;
-    else
-      for (int i = 0; i < state_; ++i) rhs_[i] = -r_[blocks_.indices[0][static_cast<std::size_t>(i)]];
-    rhs_[state_] = -((u - anchor).array() * normal.array() * weight_.array()).sum();
-    solve_bordered(step_);
-    const double size = length(step_);
+    lu_.compute(bordered_);
+    right_side(u, anchor);
+    lu_.solve(rhs_, solution_);
+    const double size = length_of(solution_);
     if (!std::isfinite(size)) return report;
+    if (report.iterations == 0) report.first_step = size;
+    if (report.iterations > 0 && size > 2.0 * previous && size > 1e3 * options_.tolerance) return report;
+    spread(solution_, 1.0, step_);
     u += step_;
     ++report.iterations;
-    if (report.iterations == 1) report.first_step = size;
-    if (report.iterations == 2) report.contraction = size / previous;
-    if (report.iterations > 1 && size > 2.0 * previous && size > 1e3 * options_.tolerance) return report;
-    // Newton squares the error: the step after this one would be about size^2 times (size / previous^2).
-    const double predicted = report.iterations == 1 ? size : size * size * std::min(size / (previous * previous), 1e3);
-    last = predicted < options_.tolerance;
     previous = size;
   }
 }
 
+// A last step with the factors of the step before it, if it contracts enough; else nothing happens. The tangent's first guess comes along.
+bool Curve::settle(Out u, In anchor, double previous, Report& report) {
+  right_side(u, anchor);
+  lu_.solve_two(rhs_, last_, solution_, tangent_);
+  const double size = length_of(solution_), rate = size / previous;
+  if (report.iterations == 1) report.contraction = rate;
+  if (!(size <= options_.last_step && (size == 0.0 || size * rate < options_.tolerance))) return false;
+  spread(solution_, 1.0, step_);
+  u += step_;
+  ++report.iterations;
+  subtract_product(solution_, rhs_);
+  report.residual = 0.0;
+  for (int i = 0; i < state_; ++i) report.residual = std::max(report.residual, std::abs(rhs_[i]));
+  report.ok = true;
+  return true;
+}
+
+// y <- y - B x, B the bordered matrix at the point.
+void Curve::subtract_product(const Vector& x, Vector& y) const {
+  const double* b = bordered_.data();
+  for (int c = 0; c <= state_; ++c) {
+    const double t = x[c];
+    for (int r = 0; r <= state_; ++r) y[r] -= *b++ * t;
+  }
+}
+
+// The last column of the inverse of the bordered matrix. The factors are a correction old: where they do not contract, new ones.
+bool Curve::refine_tangent() {
+  for (int pass = 0; pass < 3; ++pass) {
+    for (int i = 0; i <= state_; ++i) rhs_[i] = last_[i];
+    subtract_product(tangent_, rhs_);
+    lu_.solve(rhs_, refined_);
+    double change = 0.0, size = 0.0;
+    for (int i = 0; i <= state_; ++i) {
+      change += refined_[i] * refined_[i];
+      size += tangent_[i] * tangent_[i];
+      tangent_[i] += refined_[i];
+    }
+    if (!(change < 1e-6 * size)) break;
+    if (change < 1e-11 * size) return true;  // the next change would be its square
+  }
+  lu_.compute(bordered_);
+  lu_.solve(last_, tangent_);
+  return tangent_.allFinite();
+}
+
 bool Curve::complete(In u, Out tangent, Signature& signature) {
   const int n = f_.size();
-  rhs_.setZero();
-  rhs_[state_] = 1.0;
-  solve_bordered(tangent);
-  const double size = length(tangent);
+  if (!refine_tangent()) return false;
+  const double size = length_of(tangent_);
   if (!std::isfinite(size) || size == 0.0) return false;
-  tangent /= size;
+  spread(tangent_, 1.0 / size, tangent);
   signature.forward = tangent[n] > 0.0;
   if (!f_.is_flow()) {
     block_determinants(signature, signature.forward);

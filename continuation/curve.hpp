@@ -6,6 +6,10 @@
 ///
 /// Where symmetries split the Jacobian into blocks only block 0 is solved: r, steps and tangents are zero in the others.
 ///
+/// A point costs two linearisations and one LU: Newton from the predicted point, a chord step with the same factors, the tangent by refinement
+///
+///     t <- t + LU^-1 (e - B t),   B the bordered matrix at the point, LU of the one a correction earlier.
+///
 /// W is diagonal: lengths are measured in units of the parameter range and of the size of x, so that steps need no tuning.
 
 #include <array>
@@ -42,7 +46,8 @@ struct Sample {
 };
 
 struct CurveOptions {
-  double tolerance = 1e-11;  ///< on the predicted size of the next Newton step, in the metric
+  double tolerance = 1e-11;  ///< on the predicted size of the next step, in the metric
+  double last_step = 1e-9;   ///< largest last step: the Jacobian, and with it tangent and eigenvalues, is that before it
   int max_iterations = 8;
 };
 
@@ -53,7 +58,7 @@ class Curve {
     int iterations = 0;
     double first_step = 0.0;   ///< length of the first correction
     double contraction = 0.0;  ///< second over first
-    double residual = 0.0;
+    double residual = 0.0;     ///< largest |r_i|, of the last step to first order: the second, < last_step^2, is below rounding
   };
 
   Curve(const Problem& f, Blocks blocks, const CurveOptions& options);
@@ -65,10 +70,17 @@ class Curve {
   /// Metric: x in units of x_scale, p in units of p_scale.
   void set_scales(double x_scale, double p_scale);
   double x_scale() const { return x_scale_; }
-  double dot(In a, In b) const { return (a.array() * weight_.array() * b.array()).sum(); }
-  double length(In a) const { return std::sqrt(dot(a, a)); }
+  double p_scale() const { return p_scale_; }
+  template <class A, class B>
+  double dot(const Eigen::MatrixBase<A>& a, const Eigen::MatrixBase<B>& b) const {
+    return (a.array() * weight_.array() * b.array()).sum();
+  }
+  template <class A>
+  double length(const Eigen::MatrixBase<A>& a) const {
+    return std::sqrt((a.array().square() * weight_.array()).sum());
+  }
 
-  /// Newton onto the curve within the plane through `anchor` normal to `normal`. On success the Jacobian at u is kept for `complete`.
+  /// Newton onto the curve within the plane through `anchor` normal to `normal`. On success Jacobian and factors are kept for `complete`.
   Report correct(Out u, In normal, In anchor);
   /// Tangent (positive along the normal of `correct`), spectrum and signature at the point just corrected. False if singular or non-finite.
   bool complete(In u, Out tangent, Signature& signature);
@@ -88,8 +100,13 @@ class Curve {
   bool between(const Sample& a, const Sample& b, double sigma, Sample& out);
 
  private:
-  void border(In normal);
-  void solve_bordered(Out answer);
+  void border();
+  void spread(const Vector& from, double scale, Out answer) const;
+  double length_of(const Vector& from) const;
+  void subtract_product(const Vector& x, Vector& y) const;
+  void right_side(In u, In anchor);
+  bool settle(Out u, In anchor, double previous, Report& report);
+  bool refine_tangent();
   void block_determinants(Signature& signature, bool forward);
   bool count_multipliers(In u, Signature& signature);
 
@@ -102,13 +119,13 @@ class Curve {
   Eigen::VectorXi group_;  // of each multiplier
   int leads_;
   std::array<double, Signature::max_blocks> lead_{};
-  Vector weight_, r_, step_;
+  Vector weight_, r_, step_, normal_;  // normal_: weighted
   Matrix jacobian_;
-  bool whole_;  // no symmetry: block 0 is everything, in order
-  int state_;   // size of block 0
-  Vector solution_, rhs_;
-  Matrix bordered_;
-  DenseLu lu_;
+  bool whole_;                                        // no symmetry: block 0 is everything, in order
+  int state_;                                         // size of block 0
+  Vector solution_, rhs_, refined_, last_, tangent_;  // last_: the unit vector of the plane
+  Matrix bordered_;                                   // at the point
+  DenseLu lu_;                                        // of it, or of the one a correction earlier
   std::vector<Matrix> block_;
   std::vector<DenseLu> block_lu_;
   double x_scale_ = 1.0, p_scale_ = 1.0;

@@ -352,13 +352,12 @@ bool EventFinder::accept(const Kind& kind, const Sample& a, const Sample& b, Spe
 
 bool EventFinder::mirror_crossing(const Sample& a, const Sample& b, int r, SpecialPoint& out) {
   const Problem& f = curve_.problem();
+  const Vector& signs = f.reflections()[static_cast<std::size_t>(r)].signs;
+  double product = 0.0;
+  for (int i = 0; i < f.size(); ++i)
+    if (signs[i] < 0.0) product += a.u[i] * b.u[i];
+  if (!(product < 0.0)) return false;
   const Indices odd = odd_coordinates(f, r);
-  double product = 0.0, size = 0.0;
-  for (int i : odd) {
-    product += a.u[i] * b.u[i];
-    size = std::max({size, std::abs(a.u[i]), std::abs(b.u[i])});
-  }
-  if (!(product < 0.0) || size == 0.0) return false;
   // Where the odd part passes zero on the chord, made exactly symmetric.
   double na = 0.0, nb = 0.0;
   for (int i : odd) {

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -27,10 +28,11 @@ struct Walker::State {
       : curve(f, std::move(blocks), o.corrector),
         finder(curve, o.events),
         branch(f.size(), Curve::spectrum_size(f), o.max_points),
-        step(o.initial_step) {
-    for (auto* p : {&now, &before, &next}) {
-      p->u = Vector::Zero(f.size() + 1);
-      p->tangent = Vector::Zero(f.size() + 1);
+        step(o.initial_step),
+        max_turn(2.0 * std::sin(o.max_angle_deg * (std::numbers::pi / 360.0))) {
+    for (auto& p : samples) {
+      p.u = Vector::Zero(f.size() + 1);
+      p.tangent = Vector::Zero(f.size() + 1);
     }
     eigenvalues = Eigen::VectorXcd::Zero(Curve::spectrum_size(f));
     predicted = bend = start_u = start_tangent = Vector::Zero(f.size() + 1);
@@ -38,14 +40,17 @@ struct Walker::State {
   Curve curve;
   EventFinder finder;
   Branch branch;
-  Sample before, now, next;
+  std::array<Sample, 3> samples;
+  Sample *before = &samples[0], *now = &samples[1], *next = &samples[2];  // change places
   Vector predicted, bend, start_u, start_tangent;
   Eigen::VectorXcd eigenvalues;  // of `next`, kept while events are looked for
   Curve::Report report;
   double step, step_taken = 0.0, arclength = 0.0, largest_x = 0.0;
   double factor = 1.0;  // by which the next step may change
+  double max_turn;      // between successive tangents of unit length
   int accepted = 0;
   bool has_signature = false;  // of `now`; not at a branch point, where it is undefined
+  bool has_before = false;     // `before` is a point of its own
   StopReason stop = StopReason::none;
   const Observer* observer = nullptr;
 };
@@ -64,7 +69,7 @@ Branch Walker::walk(const Vector& u0, const Observer& observer) {
   if (forward.stop_reason == StopReason::closed_loop || forward.stop_reason == StopReason::observer || forward.points() == 0) return forward;
   const Vector down = -forward.tangent(0);
   const Branch backward = walk_from(polished.x, down, false, observer);
-  return Branch::joined(backward, forward);
+  return Branch::joined(backward, std::move(forward));
 }
 
 Branch Walker::walk_from(const Vector& u0, const Vector& direction, bool from_branch_point, const Observer& observer) {
@@ -73,10 +78,10 @@ Branch Walker::walk_from(const Vector& u0, const Vector& direction, bool from_br
     return std::move(s_->branch);
   }
   s_->observer = &observer;
-  const double sense = s_->now.tangent[problem_.size()], p0 = u0[problem_.size()];
+  const double sense = s_->now->tangent[problem_.size()], p0 = u0[problem_.size()];
   if ((p0 >= options_.upper && sense > 0.0) || (p0 <= options_.lower && sense < 0.0)) s_->stop = StopReason::parameter_bound;
   for (const auto& b : options_.bounds) {
-    const double at = u0[b.index], along = s_->now.tangent[b.index];
+    const double at = u0[b.index], along = s_->now->tangent[b.index];
     if ((at >= b.upper && along > 0.0) || (at <= b.lower && along < 0.0)) s_->stop = StopReason::parameter_bound;
   }
   while (can_continue()) {
@@ -109,12 +114,12 @@ bool Walker::begin(const Vector& u0, const Vector& direction, bool from_branch_p
   const double range = options_.upper - options_.lower;
   s.largest_x = u0.head(n).norm();
   s.curve.set_scales(s.largest_x > 0.0 ? s.largest_x : 1.0, range);
-  s.now.u = u0;
+  s.now->u = u0;
   if (from_branch_point) {
-    s.now.tangent = direction / s.curve.length(direction);
+    s.now->tangent = direction / s.curve.length(direction);
     Vector r(n);
     problem_.residual(u0, r);
-    s.now.residual = r.lpNorm<Eigen::Infinity>();
+    s.now->residual = r.lpNorm<Eigen::Infinity>();
     // the critical one is neutral here up to rounding: do not count it
     int unstable = 0;
     if (problem_.is_flow()) {
@@ -128,48 +133,55 @@ bool Walker::begin(const Vector& u0, const Vector& direction, bool from_branch_p
       if (s.curve.orbit()->multipliers(u0, s.eigenvalues, group))
         for (const auto& mu : s.eigenvalues) unstable += std::abs(mu) > 1.0 + 1e-8 ? 1 : 0;
     }
-    s.branch.append(s.now.u, s.now.tangent, 0.0, s.now.residual, 0.0, 0, unstable, &s.eigenvalues);
+    s.branch.append(s.now->u, s.now->tangent, 0.0, s.now->residual, 0.0, 0, unstable, &s.eigenvalues);
     s.branch.start_reason = StopReason::known_branch_point;
   } else {
     const Vector normal = direction;
-    if (!s.curve.sample(u0, normal, s.now)) return false;
-    if (s.largest_x == 0.0 && s.now.tangent.head(n).norm() > 0.0) {  // starts at rest: the slope tells the size of x
-      const double slope = s.now.tangent.head(n).norm() / std::abs(s.now.tangent[n]);
+    if (!s.curve.sample(u0, normal, *s.now)) return false;
+    if (s.largest_x == 0.0 && s.now->tangent.head(n).norm() > 0.0) {  // starts at rest: the slope tells the size of x
+      const double slope = s.now->tangent.head(n).norm() / std::abs(s.now->tangent[n]);
       s.curve.set_scales(std::clamp(slope * range, 1e-12, 1e12), range);
-      if (!s.curve.sample(u0, normal, s.now)) return false;
+      if (!s.curve.sample(u0, normal, *s.now)) return false;
     }
     s.has_signature = true;
-    s.branch.append(s.now.u, s.now.tangent, 0.0, s.now.residual, 0.0, s.now.iterations, s.now.signature.total_unstable(), &s.curve.eigenvalues());
+    s.branch.append(s.now->u, s.now->tangent, 0.0, s.now->residual, 0.0, s.now->iterations, s.now->signature.total_unstable(),
+                    &s.curve.eigenvalues());
   }
-  s.before = s.now;
-  s.start_u = s.now.u;
-  s.start_tangent = s.now.tangent;
+  *s.before = *s.now;
+  s.start_u = s.now->u;
+  s.start_tangent = s.now->tangent;
   return true;
 }
 
 bool Walker::can_continue() const { return s_->stop == StopReason::none; }
 
-// Tangent, bent by how it turned over the last step.
+// The cubic through the last two points and their tangents; one point alone: along its tangent.
 void Walker::predict() {
   State& s = *s_;
-  s.predicted = s.now.u + s.step * s.now.tangent;
-  if (s.accepted > 0 && s.step_taken > 0.0 && s.has_signature) {
-    s.bend = (s.now.tangent - s.before.tangent) * (0.5 * s.step * s.step / s.step_taken);
-    s.predicted += s.bend;
+  const double chord = s.step_taken;
+  if (s.accepted == 0 || chord <= 0.0 || !s.has_signature || !s.has_before) {
+    s.predicted = s.now->u + s.step * s.now->tangent;
+    return;
   }
+  // Arc over chord of a circle that turns so much.
+  s.bend = s.now->tangent - s.before->tangent;
+  const double arc = chord * (1.0 + s.curve.dot(s.bend, s.bend) / 24.0), sigma = s.step / arc, sigma2 = sigma * sigma;
+  // u = now + sigma m1 + sigma^2 (2 m1 + m0 - 3 d) + sigma^3 (m1 + m0 - 2 d), d the chord, m the tangents times the arc
+  const double on_now = arc * (sigma + sigma2 * (2.0 + sigma)), on_before = arc * sigma2 * (1.0 + sigma), on_chord = -sigma2 * (3.0 + 2.0 * sigma);
+  s.predicted = (1.0 + on_chord) * s.now->u - on_chord * s.before->u + on_now * s.now->tangent + on_before * s.before->tangent;
 }
 
 bool Walker::correct() {
   State& s = *s_;
   const int n = problem_.size();
-  s.next.u = s.predicted;
-  s.report = s.curve.correct(s.next.u, s.now.tangent, s.predicted);
+  s.next->u = s.predicted;
+  s.report = s.curve.correct(s.next->u, s.now->tangent, s.predicted);
   if (!s.report.ok) return false;
   int index = n;
   double bound = 0.0;
   if (!within_bounds(index, bound)) {
     if (!reach_bound(index, bound)) return false;
-  } else if (!s.curve.complete(s.next.u, s.next.tangent, s.next.signature)) {
+  } else if (!s.curve.complete(s.next->u, s.next->tangent, s.next->signature)) {
     return false;
   }
   // A jump into a symmetric branch is no step along this one.
@@ -179,23 +191,23 @@ bool Walker::correct() {
     double odd = 0.0, was_odd = 0.0;
     for (int i = 0; i < n; ++i)
       if (signs[i] < 0.0) {
-        odd = std::max(odd, std::abs(s.next.u[i]));
-        was_odd = std::max({was_odd, std::abs(s.now.u[i]), s.step * std::abs(s.now.tangent[i])});
+        odd = std::max(odd, std::abs(s.next->u[i]));
+        was_odd = std::max({was_odd, std::abs(s.now->u[i]), s.step * std::abs(s.now->tangent[i])});
       }
     if (odd < 1e-9 * was_odd) return false;
   }
-  const double cosine = std::clamp(s.curve.dot(s.now.tangent, s.next.tangent), -1.0, 1.0);
-  const double angle = std::acos(cosine), limit = options_.max_angle_deg * std::numbers::pi / 180.0;
+  const double cosine = std::min(s.curve.dot(s.now->tangent, s.next->tangent), 1.0);
+  const double angle = std::sqrt(2.0 - 2.0 * cosine), limit = s.max_turn;  // as chords
   const bool first_off_branch_point = s.accepted == 0 && !s.has_signature;
   const double by_angle = angle / (0.6 * limit);
   const double by_contraction = std::sqrt(s.report.contraction / 0.05), by_distance = std::sqrt(s.report.first_step / 5e-3);
   s.factor = std::clamp(std::max({by_angle, by_contraction, by_distance}), 0.5, 2.0);
   if (angle > limit && !first_off_branch_point && s.step > 4.0 * options_.min_step) return false;
-  s.step_taken = s.curve.length(s.next.u - s.now.u);
-  s.next.lead = s.curve.leads_now();
+  s.step_taken = s.curve.length(s.next->u - s.now->u);
+  s.next->lead = s.curve.leads_now();
   s.eigenvalues = s.curve.eigenvalues();
-  s.next.residual = s.report.residual;
-  s.next.iterations = s.report.iterations;
+  s.next->residual = s.report.residual;
+  s.next->iterations = s.report.iterations;
   return true;
 }
 
@@ -204,7 +216,7 @@ bool Walker::within_bounds(int& index, double& bound) const {
   const int n = problem_.size();
   double first = 2.0;  // fraction of the step
   const auto check = [&](int i, double lower, double upper) {
-    const double to = s_->next.u[i], from = s_->now.u[i], end = to < lower ? lower : upper;
+    const double to = s_->next->u[i], from = s_->now->u[i], end = to < lower ? lower : upper;
     if (to >= lower && to <= upper) return;
     const double part = std::clamp((end - from) / (to - from), 0.0, 1.0);
     if (part >= first) return;
@@ -220,15 +232,15 @@ bool Walker::within_bounds(int& index, double& bound) const {
 // The step crosses a bound of coordinate `index` of u: end on it exactly.
 bool Walker::reach_bound(int index, double bound) {
   State& s = *s_;
-  const double part = std::clamp((bound - s.now.u[index]) / (s.next.u[index] - s.now.u[index]), 0.0, 1.0);
-  s.next.u = s.now.u + part * (s.next.u - s.now.u);
-  s.next.u[index] = bound;
-  s.bend = Vector::Unit(problem_.size() + 1, index) * (s.next.u[index] > s.now.u[index] ? 1.0 : -1.0);
-  s.predicted = s.next.u;
-  s.report = s.curve.correct(s.next.u, s.bend, s.predicted);
-  if (!s.report.ok || s.curve.length(s.next.u - s.now.u) > 2.0 * s.step) return false;
-  s.next.u[index] = bound;
-  if (!s.curve.complete(s.next.u, s.next.tangent, s.next.signature)) return false;
+  const double part = std::clamp((bound - s.now->u[index]) / (s.next->u[index] - s.now->u[index]), 0.0, 1.0);
+  s.next->u = s.now->u + part * (s.next->u - s.now->u);
+  s.next->u[index] = bound;
+  s.bend = Vector::Unit(problem_.size() + 1, index) * (s.next->u[index] > s.now->u[index] ? 1.0 : -1.0);
+  s.predicted = s.next->u;
+  s.report = s.curve.correct(s.next->u, s.bend, s.predicted);
+  if (!s.report.ok || s.curve.length(s.next->u - s.now->u) > 2.0 * s.step) return false;
+  s.next->u[index] = bound;
+  if (!s.curve.complete(s.next->u, s.next->tangent, s.next->signature)) return false;
   s.stop = StopReason::parameter_bound;
   return true;
 }
@@ -251,18 +263,18 @@ void Walker::locate_events() {
   SpecialPoint crossing;
   for (int r = 0; r < static_cast<int>(problem_.reflections().size()); ++r) {
     const auto& active = s.branch.active_reflections;
-    if (std::find(active.begin(), active.end(), r) != active.end() || !s.finder.mirror_crossing(s.now, s.next, r, crossing)) continue;
+    if (std::find(active.begin(), active.end(), r) != active.end() || !s.finder.mirror_crossing(*s.now, *s.next, r, crossing)) continue;
     // Stop on the branch point; what lies between is still looked at. Not nearer than 1e-3 of the step: the critical eigenvalue and the
     // slope of the parameter vanish with the square of the distance.
-    const Vector chord = s.next.u - s.now.u;
+    const Vector chord = s.next->u - s.now->u;
     Sample last;
     if (s.curve.sample(crossing.u - 1e-3 * s.step_taken * crossing.tangent, chord, last))
-      for (auto& e : s.finder.find(s.before, s.now, last)) {
-        e.arclength = s.arclength + s.curve.length(e.u - s.now.u);
+      for (auto& e : s.finder.find(*s.before, *s.now, last)) {
+        e.arclength = s.arclength + s.curve.length(e.u - s.now->u);
         s.branch.special.push_back(std::move(e));
       }
-    s.next.u = crossing.u;
-    s.step_taken = s.curve.length(s.next.u - s.now.u);
+    s.next->u = crossing.u;
+    s.step_taken = s.curve.length(s.next->u - s.now->u);
     crossing.arclength = s.arclength + s.step_taken;
     s.branch.special.push_back(std::move(crossing));
     s.stop = StopReason::symmetric_branch;
@@ -271,10 +283,10 @@ void Walker::locate_events() {
   // At either end of the walk there is no point beyond that would show a turn.
   const int first = s.branch.start_reason == StopReason::known_branch_point ? 1 : 0;
   const bool last = s.stop != StopReason::none || s.accepted == first;
-  if (last || !(s.now.signature == s.next.signature) || s.finder.turns_at(s.before, s.now, s.next))
-    for (auto& e : s.finder.find(s.before, s.now, s.next, last)) {
-      const Vector from_now = e.u - s.now.u;
-      const bool behind = s.curve.dot(from_now, s.next.u - s.now.u) < 0.0;
+  if (last || !(s.now->signature == s.next->signature) || s.finder.turns_at(*s.before, *s.now, *s.next))
+    for (auto& e : s.finder.find(*s.before, *s.now, *s.next, last)) {
+      const Vector from_now = e.u - s.now->u;
+      const bool behind = s.curve.dot(from_now, s.next->u - s.now->u) < 0.0;
       e.arclength = s.arclength + (behind ? -1.0 : 1.0) * s.curve.length(from_now);
       s.branch.special.push_back(std::move(e));
     }
@@ -291,18 +303,18 @@ void Walker::find_peaks_and_values() {
     p.u = at.u;
     p.tangent = at.tangent;
     p.residual = at.residual;
-    p.bracket[0] = s.now.u[n];
-    p.bracket[1] = s.next.u[n];
-    p.arclength = s.arclength + s.curve.length(at.u - s.now.u);
+    p.bracket[0] = s.now->u[n];
+    p.bracket[1] = s.next->u[n];
+    p.arclength = s.arclength + s.curve.length(at.u - s.now->u);
     p.unstable_before = p.unstable_after = at.signature.total_unstable();
     s.branch.special.push_back(std::move(p));
   };
   for (double value : options_.user_values) {
-    if ((s.now.u[n] - value) * (s.next.u[n] - value) > 0.0 || s.now.u[n] == value) continue;
-    const double part = (value - s.now.u[n]) / (s.next.u[n] - s.now.u[n]);
-    Vector guess = s.now.u + part * (s.next.u - s.now.u);
+    if ((s.now->u[n] - value) * (s.next->u[n] - value) > 0.0 || s.now->u[n] == value) continue;
+    const double part = (value - s.now->u[n]) / (s.next->u[n] - s.now->u[n]);
+    Vector guess = s.now->u + part * (s.next->u - s.now->u);
     guess[n] = value;
-    const Vector normal = Vector::Unit(n + 1, n) * (s.next.u[n] > s.now.u[n] ? 1.0 : -1.0);
+    const Vector normal = Vector::Unit(n + 1, n) * (s.next->u[n] > s.now->u[n] ? 1.0 : -1.0);
     Sample at;
     if (s.curve.sample(guess, normal, at)) add(EventType::user_value, "", at);
   }
@@ -318,26 +330,26 @@ void Walker::find_peak(const Observable& peak) {
     const double h = 1e-5 * std::min(1.0, s.curve.x_scale());
     return (peak.value(at.u + h * at.tangent) - peak.value(at.u - h * at.tangent)) / (2.0 * h);
   };
-  double f = slope(s.now), g = slope(s.next);
+  double f = slope(*s.now), g = slope(*s.next);
   if (!(f * g < 0.0)) return;
   SpecialPoint p;
   p.type = EventType::peak;
   p.subtype = peak.name;
-  for (int k = 0; k < 2; ++k) p.bracket[k] = k == 0 ? std::min(s.now.u[n], s.next.u[n]) : std::max(s.now.u[n], s.next.u[n]);
-  Sample at = s.next;
+  for (int k = 0; k < 2; ++k) p.bracket[k] = k == 0 ? std::min(s.now->u[n], s.next->u[n]) : std::max(s.now->u[n], s.next->u[n]);
+  Sample at = *s.next;
   double lo = 0.0, hi = 1.0;
   for (int i = 0; i < 60 && hi - lo > 1e-10; ++i) {
     const double sigma = i % 3 == 2 ? 0.5 * (lo + hi) : std::clamp(lo + (hi - lo) * f / (f - g), lo + 0.02 * (hi - lo), hi - 0.02 * (hi - lo));
-    if (!s.curve.between(s.now, s.next, sigma, at)) break;
+    if (!s.curve.between(*s.now, *s.next, sigma, at)) break;
     if (peak.form && problem_.derivatives() >= 2) {  // its own system, from ever nearer
       PeakSystem system(problem_, s.curve.blocks().indices[0], *peak.form, at.u);
       const NewtonResult r = newton(system, system.unknowns(at.u), {.tolerance = 1e-13, .max_iterations = 12});
       const bool solved = r.ok() || (r.outcome == Outcome::stalled && r.residual < 1e-12);
-      const Vector chord = s.next.u - s.now.u;
+      const Vector chord = s.next->u - s.now->u;
       Vector u = at.u;
       if (solved) u = system.base_point(r.x);
-      const double part = s.curve.dot(u - s.now.u, chord) / s.curve.dot(chord, chord);
-      if (solved && part > -1e-6 && part < 1.0 + 1e-6 && s.curve.length(u - s.now.u - part * chord) < 0.5 * s.step_taken + 1e-12 &&
+      const double part = s.curve.dot(u - s.now->u, chord) / s.curve.dot(chord, chord);
+      if (solved && part > -1e-6 && part < 1.0 + 1e-6 && s.curve.length(u - s.now->u - part * chord) < 0.5 * s.step_taken + 1e-12 &&
           s.curve.sample(u, chord, at)) {
         at.u = u;
         at.residual = r.residual;
@@ -356,7 +368,7 @@ void Walker::find_peak(const Observable& peak) {
   p.u = at.u;
   p.tangent = at.tangent;
   p.residual = at.residual;
-  p.arclength = s.arclength + s.curve.length(at.u - s.now.u);
+  p.arclength = s.arclength + s.curve.length(at.u - s.now->u);
   for (int count : at.signature.unstable) p.unstable_after += count;
   p.unstable_before = p.unstable_after;
   s.branch.special.push_back(std::move(p));
@@ -367,21 +379,22 @@ void Walker::accept() {
   const int n = problem_.size();
   if (s.accepted > 2 && close_loop()) return;
   s.arclength += s.step_taken;
-  s.branch.append(s.next.u, s.next.tangent, s.arclength, s.next.residual, s.step, s.next.iterations, s.next.signature.total_unstable(),
+  s.branch.append(s.next->u, s.next->tangent, s.arclength, s.next->residual, s.step, s.next->iterations, s.next->signature.total_unstable(),
                   &s.eigenvalues);
   std::swap(s.before, s.now);
   std::swap(s.now, s.next);
-  if (!s.has_signature) s.before = s.now;
+  s.has_before = s.has_signature;
+  if (!s.has_signature) *s.before = *s.now;
   s.has_signature = true;
   ++s.accepted;
-  const double size = s.now.u.head(n).norm();
+  const double size = s.now->u.head(n).norm();
   if (size > 2.0 * s.largest_x || s.largest_x == 0.0) {
     s.largest_x = size;
     if (size > s.curve.x_scale()) {
       s.curve.set_scales(size, options_.upper - options_.lower);
-      for (auto* p : {&s.before, &s.now}) p->tangent /= s.curve.length(p->tangent);
+      for (auto* p : {s.before, s.now}) p->tangent /= s.curve.length(p->tangent);
       s.start_tangent /= s.curve.length(s.start_tangent);  // close_loop measures in the new metric
-      s.step_taken = s.curve.length(s.now.u - s.before.u);
+      s.step_taken = s.curve.length(s.now->u - s.before->u);
     }
   }
   if (s.stop == StopReason::none && s.branch.points() == s.branch.capacity()) s.stop = StopReason::max_points;
@@ -391,14 +404,16 @@ void Walker::accept() {
 // Does the step pass the first point in its sense? Then the curve is closed.
 bool Walker::close_loop() {
   State& s = *s_;
-  const double d0 = s.curve.length(s.now.u - s.start_u), d1 = s.curve.length(s.next.u - s.start_u);
-  if (std::min(d0, d1) > 1.5 * s.step_taken || s.curve.dot(s.now.tangent, s.start_tangent) < 0.5) return false;
-  s.bend = s.start_u - s.now.u;
-  const double ahead = s.curve.dot(s.bend, s.now.tangent);
+  const int n = problem_.size();
+  if (std::abs(s.next->u[n] - s.start_u[n]) > 2.5 * s.step_taken * s.curve.p_scale()) return false;  // far off, as most often
+  const double d0 = s.curve.length(s.now->u - s.start_u), d1 = s.curve.length(s.next->u - s.start_u);
+  if (std::min(d0, d1) > 1.5 * s.step_taken || s.curve.dot(s.now->tangent, s.start_tangent) < 0.5) return false;
+  s.bend = s.start_u - s.now->u;
+  const double ahead = s.curve.dot(s.bend, s.now->tangent);
   if (ahead < 0.0 || ahead > 1.2 * s.step_taken) return false;
   s.predicted = s.start_u;
   Sample at;
-  const Vector chord = s.next.u - s.now.u, before_start = s.now.u + (ahead / s.step_taken) * chord;
+  const Vector chord = s.next->u - s.now->u, before_start = s.now->u + (ahead / s.step_taken) * chord;
   // Off the chord by the curvature only, and Newton from there in the start's plane must come to the start.
   if (s.curve.length(before_start - s.start_u) > 0.3 * s.step_taken) return false;
   Vector guess = before_start;
@@ -406,7 +421,7 @@ bool Walker::close_loop() {
   const double shift = s.curve.dot(s.start_u - at.u, s.start_tangent);
   if (!s.curve.sample(at.u + shift * s.start_tangent, s.start_tangent, at)) return false;
   if (s.curve.length(at.u - s.start_u) > 1e-7) return false;
-  s.arclength += s.curve.length(s.start_u - s.now.u);
+  s.arclength += s.curve.length(s.start_u - s.now->u);
   s.branch.append(s.start_u, s.start_tangent, s.arclength, at.residual, s.step, at.iterations, at.signature.total_unstable(), &s.curve.eigenvalues());
   // What lies behind the first point was found by the first step.
   std::erase_if(s.branch.special, [&s](const SpecialPoint& e) { return e.arclength > s.arclength; });

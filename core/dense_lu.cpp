@@ -62,6 +62,39 @@ void substitute(const double* a, const int* pivot, const double* b, double* out)
   for (int i = 0; i < N; ++i) out[i] = x[i];
 }
 
+// Two right-hand sides side by side.
+template <int N>
+void substitute_two(const double* a, const int* pivot, const double* b, const double* d, double* out, double* out2) {
+  double x[N][2];
+#pragma GCC unroll 8
+  for (int i = 0; i < N; ++i) {
+    x[i][0] = b[i];
+    x[i][1] = d[i];
+  }
+#pragma GCC unroll 8
+  for (int k = 0; k < N; ++k) {
+    std::swap(x[k][0], x[pivot[k]][0]);
+    std::swap(x[k][1], x[pivot[k]][1]);
+  }
+#pragma GCC unroll 8
+  for (int k = 0; k < N; ++k)
+#pragma GCC unroll 8
+    for (int i = k + 1; i < N; ++i)
+      for (int s = 0; s < 2; ++s) x[i][s] -= a[i + N * k] * x[k][s];
+#pragma GCC unroll 8
+  for (int k = N - 1; k >= 0; --k) {
+    for (int s = 0; s < 2; ++s) x[k][s] *= a[k + N * k];
+#pragma GCC unroll 8
+    for (int i = 0; i < k; ++i)
+      for (int s = 0; s < 2; ++s) x[i][s] -= a[i + N * k] * x[k][s];
+  }
+#pragma GCC unroll 8
+  for (int i = 0; i < N; ++i) {
+    out[i] = x[i][0];
+    out2[i] = x[i][1];
+  }
+}
+
 template <int N>
 void substitute_transposed(const double* a, const int* pivot, const double* b, double* out) {
   double x[N];
@@ -121,6 +154,15 @@ void DenseLu::compute(MatrixIn a) {
 void DenseLu::solve(In b, Out x) const {
   if (n_ > small) x = large_.solve(b);
   else with_size(n_, [&](auto size) { substitute<size()>(a_, pivot_, b.data(), x.data()); });
+}
+
+void DenseLu::solve_two(In b, In d, Out x, Out y) const {
+  if (n_ > small) {
+    x = large_.solve(b);
+    y = large_.solve(d);
+    return;
+  }
+  with_size(n_, [&](auto size) { substitute_two<size()>(a_, pivot_, b.data(), d.data(), x.data(), y.data()); });
 }
 
 void DenseLu::solve_transposed(In b, Out x) const {

@@ -21,6 +21,7 @@ class DenseLu {
 
   void compute(MatrixIn a);
   void solve(In b, Out x) const;
+  void solve_two(In b, In d, Out x, Out y) const;  ///< a x = b, a y = d, for small a in the time of one
   void solve_transposed(In b, Out x) const;
   bool negative_determinant() const;
 

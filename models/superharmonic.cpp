@@ -35,60 +35,95 @@ void SuperharmonicFlow::do_residual(In u, Out r) const {
   slow_flow<double, double>(c, u[0], u[1], u[2], u[3], {r.data(), 4});
 }
 
-template <int K>
-void SuperharmonicFlow::evaluate(In u, double* r, MatrixOut j) const {
-  using P = Dual<double, K>;
+template <int K, class R>
+void SuperharmonicFlow::evaluate(const R* u, R* r, R* j) const {
+  using P = Dual<R, K>;
   std::array<P, K> p;
-  for (int i = 0; i < K; ++i) p[std::size_t(i)] = seed<P>(u[4 + i], i);
+  for (int i = 0; i < K; ++i) {
+    p[std::size_t(i)] = P(u[4 + i]);
+    p[std::size_t(i)].d[std::size_t(i)] = R(1.0);
+  }
   const auto cp = model().coefficients<P>(p);
-  const double u1 = u[0], v1 = u[1], u2 = u[2], v2 = u[3];
+  const R &u1 = u[0], &v1 = u[1], &u2 = u[2], &v2 = u[3], scale = R(1.0) / cp.nw2.v;
   // 2 n w r is linear in the coefficients: d(2 n w r) = that of their slopes.
   const auto part = [&](auto pick) {
-    return SlowFlowCoefficients<double>{pick(cp.nw2),     pick(cp.detuning1), pick(cp.detuning2), pick(cp.damping1), pick(cp.damping2),
-                                        pick(cp.g1),      pick(cp.g2),        pick(cp.g3),        pick(cp.g4),       pick(cp.load_re),
-                                        pick(cp.load_im), pick(cp.Z0_re),     pick(cp.Z0_im)};
+    return SlowFlowCoefficients<R>{R(1.0),           pick(cp.detuning1), pick(cp.detuning2), pick(cp.damping1), pick(cp.damping2),
+                                   pick(cp.g1),      pick(cp.g2),        pick(cp.g3),        pick(cp.g4),       pick(cp.load_re),
+                                   pick(cp.load_im), pick(cp.Z0_re),     pick(cp.Z0_im)};
   };
-  std::array<double, 4> value, slope;
-  slow_flow<double, double>(part([](const P& x) { return x.v; }), u1, v1, u2, v2, value);
-  for (int row = 0; row < 4 && r; ++row) r[row] = value[std::size_t(row)];
+  slow_flow<R, R>(part([](const P& x) { return x.v; }), u1, v1, u2, v2, {r, 4});
+  for (int row = 0; row < 4; ++row) r[row] = r[row] * scale;
   for (int i = 0; i < K; ++i) {
-    auto slopes = part([i](const P& x) { return x.d[std::size_t(i)]; });
-    const double nw2_slope = slopes.nw2;
-    slopes.nw2 = 1.0;
-    slow_flow<double, double>(slopes, u1, v1, u2, v2, slope);
-    for (int row = 0; row < 4; ++row) j(row, 4 + i) = (slope[std::size_t(row)] - value[std::size_t(row)] * nw2_slope) / cp.nw2.v;
+    R* column = j + 4 * (4 + i);
+    slow_flow<R, R>(part([i](const P& x) { return x.d[std::size_t(i)]; }), u1, v1, u2, v2, {column, 4});
+    for (int row = 0; row < 4; ++row) column[row] = (column[row] - r[row] * cp.nw2.d[std::size_t(i)]) * scale;
   }
-  const double g1 = cp.g1.v, g2 = cp.g2.v, g3 = cp.g3.v, g4 = cp.g4.v, d1 = cp.damping1.v, d2 = cp.damping2.v, scale = 1.0 / cp.nw2.v;
-  const double a = u1 * u1 + v1 * v1, b = u2 * u2 + v2 * v2;
-  const double s1 = u1 * u1 - v1 * v1, t1 = 2.0 * u1 * v1, s2 = u2 * u2 - v2 * v2, t2 = 2.0 * u2 * v2;
-  const double m1 = cp.detuning1.v + g1 * a + 2.0 * g2 * b, m2 = cp.detuning2.v + g4 * b + 2.0 * g3 * a;
+  const R &g1 = cp.g1.v, &g2 = cp.g2.v, &g3 = cp.g3.v, &g4 = cp.g4.v, &d1 = cp.damping1.v, &d2 = cp.damping2.v;
+  const R a = u1 * u1 + v1 * v1, b = u2 * u2 + v2 * v2;
+  const R s1 = u1 * u1 - v1 * v1, t1 = 2.0 * u1 * v1, s2 = u2 * u2 - v2 * v2, t2 = 2.0 * u2 * v2;
+  const R m1 = cp.detuning1.v + g1 * a + 2.0 * g2 * b, m2 = cp.detuning2.v + g4 * b + 2.0 * g3 * a;
   // d/d(u1, v1) of the first pair; d/d(u2, v2) of the second likewise with the roles exchanged
-  j(0, 0) = scale * (-d1 - 2.0 * g1 * u1 * v1 - g2 * t2);
-  j(0, 1) = scale * (-m1 - 2.0 * g1 * v1 * v1 + g2 * s2);
-  j(1, 0) = scale * (m1 + 2.0 * g1 * u1 * u1 + g2 * s2);
-  j(1, 1) = scale * (-d1 + 2.0 * g1 * u1 * v1 + g2 * t2);
-  j(0, 2) = scale * (-4.0 * g2 * u2 * v1 - 2.0 * g2 * (v2 * u1 - u2 * v1));
-  j(0, 3) = scale * (-4.0 * g2 * v2 * v1 - 2.0 * g2 * (u2 * u1 + v2 * v1));
-  j(1, 2) = scale * (4.0 * g2 * u2 * u1 + 2.0 * g2 * (u2 * u1 + v2 * v1));
-  j(1, 3) = scale * (4.0 * g2 * v2 * u1 + 2.0 * g2 * (u2 * v1 - v2 * u1));
-  j(2, 2) = scale * (-d2 - 2.0 * g4 * u2 * v2 - g3 * t1);
-  j(2, 3) = scale * (-m2 - 2.0 * g4 * v2 * v2 + g3 * s1);
-  j(3, 2) = scale * (m2 + 2.0 * g4 * u2 * u2 + g3 * s1);
-  j(3, 3) = scale * (-d2 + 2.0 * g4 * u2 * v2 + g3 * t1);
-  j(2, 0) = scale * (-4.0 * g3 * u1 * v2 - 2.0 * g3 * (v1 * u2 - u1 * v2));
-  j(2, 1) = scale * (-4.0 * g3 * v1 * v2 - 2.0 * g3 * (u1 * u2 + v1 * v2));
-  j(3, 0) = scale * (4.0 * g3 * u1 * u2 + 2.0 * g3 * (u1 * u2 + v1 * v2));
-  j(3, 1) = scale * (4.0 * g3 * v1 * u2 + 2.0 * g3 * (u1 * v2 - v1 * u2));
+  j[0] = scale * (-d1 - 2.0 * g1 * u1 * v1 - g2 * t2);
+  j[4] = scale * (-m1 - 2.0 * g1 * v1 * v1 + g2 * s2);
+  j[1] = scale * (m1 + 2.0 * g1 * u1 * u1 + g2 * s2);
+  j[5] = scale * (-d1 + 2.0 * g1 * u1 * v1 + g2 * t2);
+  j[8] = scale * (-4.0 * g2 * u2 * v1 - 2.0 * g2 * (v2 * u1 - u2 * v1));
+  j[12] = scale * (-4.0 * g2 * v2 * v1 - 2.0 * g2 * (u2 * u1 + v2 * v1));
+  j[9] = scale * (4.0 * g2 * u2 * u1 + 2.0 * g2 * (u2 * u1 + v2 * v1));
+  j[13] = scale * (4.0 * g2 * v2 * u1 + 2.0 * g2 * (u2 * v1 - v2 * u1));
+  j[10] = scale * (-d2 - 2.0 * g4 * u2 * v2 - g3 * t1);
+  j[14] = scale * (-m2 - 2.0 * g4 * v2 * v2 + g3 * s1);
+  j[11] = scale * (m2 + 2.0 * g4 * u2 * u2 + g3 * s1);
+  j[15] = scale * (-d2 + 2.0 * g4 * u2 * v2 + g3 * t1);
+  j[2] = scale * (-4.0 * g3 * u1 * v2 - 2.0 * g3 * (v1 * u2 - u1 * v2));
+  j[6] = scale * (-4.0 * g3 * v1 * v2 - 2.0 * g3 * (u1 * u2 + v1 * v2));
+  j[3] = scale * (4.0 * g3 * u1 * u2 + 2.0 * g3 * (u1 * u2 + v1 * v2));
+  j[7] = scale * (4.0 * g3 * v1 * u2 + 2.0 * g3 * (u1 * v2 - v1 * u2));
+}
+
+template <int K>
+void SuperharmonicFlow::linearise(In u, double* r, MatrixOut j) const {
+  double own[4 * (4 + K)];
+  evaluate<K, double>(u.data(), r, own);
+  for (int c = 0; c < 4 + K; ++c)
+    for (int row = 0; row < 4; ++row) j(row, c) = own[row + 4 * c];
+}
+
+// The slope of the Jacobian along v.
+template <int K>
+void SuperharmonicFlow::second_along(In u, In v, MatrixOut h) const {
+  using Line = Dual<double, 1>;
+  Line at[4 + K], r[4], j[4 * (4 + K)];
+  for (int i = 0; i < 4 + K; ++i) {
+    at[i] = Line(u[i]);
+    at[i].d[0] = v[i];
+  }
+  evaluate<K, Line>(at, r, j);
+  for (int c = 0; c < 4 + K; ++c)
+    for (int row = 0; row < 4; ++row) h(row, c) = j[row + 4 * c].d[0];
 }
 
 void SuperharmonicFlow::do_linearise(In u, Out r, MatrixOut j) const {
   switch (parameters()) {
     case 0:
-      return evaluate<0>(u, r.data(), j);
+      return linearise<0>(u, r.data(), j);
     case 1:
-      return evaluate<1>(u, r.data(), j);
+      return linearise<1>(u, r.data(), j);
     case 2:
-      return evaluate<2>(u, r.data(), j);
+      return linearise<2>(u, r.data(), j);
+    default:
+      throw std::logic_error("at most two lenses");
+  }
+}
+
+void SuperharmonicFlow::do_second(In u, In v, MatrixOut h) const {
+  switch (parameters()) {
+    case 0:
+      return second_along<0>(u, v, h);
+    case 1:
+      return second_along<1>(u, v, h);
+    case 2:
+      return second_along<2>(u, v, h);
     default:
       throw std::logic_error("at most two lenses");
   }

@@ -111,8 +111,14 @@ class SuperharmonicFlow : public DualProblem<SuperharmonicModel> {
   void do_residual(In u, Out r) const override;
   void do_jacobian(In u, MatrixOut j) const override;
   void do_linearise(In u, Out r, MatrixOut j) const override;
+  void do_second(In u, In v, MatrixOut h) const override;
+  /// Field and Jacobian (4 x (4 + K), by columns) in R = double, or along a vector.
+  template <int K, class R>
+  void evaluate(const R* u, R* r, R* j) const;
   template <int K>
-  void evaluate(In u, double* r, MatrixOut j) const;
+  void linearise(In u, double* r, MatrixOut j) const;
+  template <int K>
+  void second_along(In u, In v, MatrixOut h) const;
 };
 
 // ---------------------------------------------------------------------------------------------------------------------------
