@@ -305,8 +305,8 @@ Vector BranchPointSystem::left_null_vector(In y) const {
 
 // --------------------------------------------------------------------------------------------------------------- HopfSystem
 
-HopfSystem::HopfSystem(const Problem& base, Indices state, Indices block, In u)
-    : AugmentedSystem(base, std::move(state), 1), block_(std::move(block)), full_(base.size() + base.parameters()) {
+HopfSystem::HopfSystem(const Problem& base, Indices state, Indices block, In u, double kappa)
+    : AugmentedSystem(base, std::move(state), 1), block_(std::move(block)), kappa0_(kappa), full_(base.size() + base.parameters()) {
   const int m = static_cast<int>(block_.size());
   bordered_.resize(m + 2, m + 2);
   a_.resize(m, m);
@@ -316,15 +316,16 @@ HopfSystem::HopfSystem(const Problem& base, Indices state, Indices block, In u)
   four_.resize(4, size() + parameters());
   for (int i = 0; i < u_.size(); ++i)
     if (column(i) >= 0) u_[i] = u[i];
-  base_.jacobian(u_, j_);
-  // Of the complex pairs, the one nearest the imaginary axis.
-  const Eigen::EigenSolver<Matrix> solver(block_of(j_, block_), false);
-  double nearest = std::numeric_limits<double>::infinity();
-  for (const auto& z : solver.eigenvalues())
-    if (z.imag() > 0.0 && std::abs(z.real()) < nearest) {
-      nearest = std::abs(z.real());
-      kappa0_ = z.imag() * z.imag();
-    }
+  if (!(kappa0_ > 0.0)) {
+    base_.jacobian(u_, j_);
+    const Eigen::EigenSolver<Matrix> solver(block_of(j_, block_), false);
+    double nearest = std::numeric_limits<double>::infinity();
+    for (const auto& z : solver.eigenvalues())
+      if (z.imag() > 0.0 && std::abs(z.real()) < nearest) {
+        nearest = std::abs(z.real());
+        kappa0_ = z.imag() * z.imag();
+      }
+  }
   const Vector start = unknowns(u);
   update_borders(start);
 }

@@ -102,7 +102,8 @@ class BranchPointSystem : public AugmentedSystem {
 
 class HopfSystem : public AugmentedSystem {
  public:
-  HopfSystem(const Problem& base, Indices state, Indices block, In u);
+  /// `kappa`: of the pair meant, from what is known near u; none: of the pair nearest the imaginary axis.
+  HopfSystem(const Problem& base, Indices state, Indices block, In u, double kappa = 0.0);
   Vector unknowns(In u) const override;
   void update_borders(In y) override;
   double kappa(In y) const { return y[static_cast<int>(state_.size()) + 1]; }

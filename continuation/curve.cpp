@@ -222,6 +222,8 @@ bool Curve::sample(In guess, In normal, Sample& out) {
   out.residual = report.residual;
   out.iterations = report.iterations;
   out.lead = lead_;
+  if (f_.is_flow())
+    for (int k = 0; k < leads_; ++k) out.kappa[static_cast<std::size_t>(k)] = spectrum_.kappa(k);
   return true;
 }
 

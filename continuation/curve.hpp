@@ -42,7 +42,8 @@ struct Sample {
   Signature signature;
   double residual = 0.0;
   int iterations = 0;
-  std::array<double, Signature::max_blocks> lead{};  ///< per block, real part nearest zero; of a periodic motion per group, |mu| - 1 nearest zero
+  std::array<double, Signature::max_blocks> lead{};   ///< per block, real part nearest zero; of a periodic motion per group, |mu| - 1 nearest zero
+  std::array<double, Signature::max_blocks> kappa{};  ///< per block, squared imaginary part of the complex pair nearest the imaginary axis; 0: none
 };
 
 struct CurveOptions {

@@ -237,7 +237,7 @@ bool EventFinder::solve(const Kind& kind, const Sample& near, SpecialPoint& out)
       else return false;
       break;
     case EventType::hopf:
-      system = std::make_unique<HopfSystem>(f, state, block, near.u);
+      system = std::make_unique<HopfSystem>(f, state, block, near.u, near.kappa[static_cast<std::size_t>(kind.block)]);
       break;
     case EventType::torus:
       system = torus_system(kind.block, near);

@@ -64,4 +64,17 @@ bool Spectrum::compute(MatrixIn jacobian) {
   return eigenvalues_.allFinite();
 }
 
+double Spectrum::kappa(int block) const {
+  std::size_t first = 0;
+  for (int k = 0; k < block; ++k) first += blocks_->indices[static_cast<std::size_t>(k)].size();
+  double nearest = std::numeric_limits<double>::infinity(), kappa = 0.0;
+  for (std::size_t i = first; i < first + blocks_->indices[static_cast<std::size_t>(block)].size(); ++i) {
+    const std::complex<double> z = eigenvalues_[static_cast<Eigen::Index>(i)];
+    if (!(z.imag() > 0.0) || std::abs(z.real()) >= nearest) continue;
+    nearest = std::abs(z.real());
+    kappa = z.imag() * z.imag();
+  }
+  return kappa;
+}
+
 }  // namespace whirl::continuation

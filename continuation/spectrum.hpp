@@ -21,6 +21,8 @@ class Spectrum {
   int unstable() const { return unstable_.sum(); }
   /// Real part nearest to zero in the block: the test function that announces an event.
   double lead(int block) const { return lead_[block]; }
+  /// Squared imaginary part of the complex pair nearest the imaginary axis in the block; 0 without one.
+  double kappa(int block) const;
 
  private:
   const Blocks* blocks_;

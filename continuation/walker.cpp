@@ -68,6 +68,10 @@ Branch Walker::walk(const Vector& u0, const Observer& observer) {
   Branch forward = walk_from(polished.x, up, false, observer);
   if (forward.stop_reason == StopReason::closed_loop || forward.stop_reason == StopReason::observer || forward.points() == 0) return forward;
   const Vector down = -forward.tangent(0);
+  if (leaves_range(polished.x, down)) {  // nothing on the other side
+    forward.start_reason = StopReason::parameter_bound;
+    return forward;
+  }
   const Branch backward = walk_from(polished.x, down, false, observer);
   return Branch::joined(backward, std::move(forward));
 }
@@ -78,12 +82,7 @@ Branch Walker::walk_from(const Vector& u0, const Vector& direction, bool from_br
     return std::move(s_->branch);
   }
   s_->observer = &observer;
-  const double sense = s_->now->tangent[problem_.size()], p0 = u0[problem_.size()];
-  if ((p0 >= options_.upper && sense > 0.0) || (p0 <= options_.lower && sense < 0.0)) s_->stop = StopReason::parameter_bound;
-  for (const auto& b : options_.bounds) {
-    const double at = u0[b.index], along = s_->now->tangent[b.index];
-    if ((at >= b.upper && along > 0.0) || (at <= b.lower && along < 0.0)) s_->stop = StopReason::parameter_bound;
-  }
+  if (leaves_range(u0, s_->now->tangent)) s_->stop = StopReason::parameter_bound;
   while (can_continue()) {
     predict();
     if (!correct()) {
@@ -97,6 +96,16 @@ Branch Walker::walk_from(const Vector& u0, const Vector& direction, bool from_br
   s_->branch.stop_reason = s_->stop;
   s_->branch.sort_special();
   return std::move(s_->branch);
+}
+
+// Does a walk along `direction` leave a bound on which it stands?
+bool Walker::leaves_range(In u, In direction) const {
+  const auto leaves = [&](int i, double lower, double upper) {
+    return (u[i] >= upper && direction[i] > 0.0) || (u[i] <= lower && direction[i] < 0.0);
+  };
+  bool any = leaves(problem_.size(), options_.lower, options_.upper);
+  for (const auto& b : options_.bounds) any = any || leaves(b.index, b.lower, b.upper);
+  return any;
 }
 
 bool Walker::begin(const Vector& u0, const Vector& direction, bool from_branch_point) {

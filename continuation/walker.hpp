@@ -71,6 +71,7 @@ class Walker {
   void shorten_step();
   void accept();
   void locate_events();
+  bool leaves_range(In u, In direction) const;
   bool reach_bound(int index, double bound);
   bool within_bounds(int& index, double& bound) const;
   bool close_loop();

@@ -52,8 +52,9 @@ NewtonResult newton(const Problem& f, Vector start, const NewtonOptions& options
     }
     result.x.head(n) -= dx;
     result.iterations = i + 1;
-    const double step = dx.lpNorm<Eigen::Infinity>();
-    if (step <= options.tolerance * (1.0 + result.x.head(n).lpNorm<Eigen::Infinity>())) {
+    // Done when this step, or at the rate of the last two the one to come, is below the tolerance.
+    const double step = dx.lpNorm<Eigen::Infinity>(), rate = i > 0 ? std::min(step / previous, 1.0) : 1.0;
+    if (step * rate <= options.tolerance * (1.0 + result.x.head(n).lpNorm<Eigen::Infinity>())) {
       f.residual(result.x, r);
       result.residual = r.lpNorm<Eigen::Infinity>();
       result.outcome = r.allFinite() ? Outcome::converged : Outcome::non_finite;

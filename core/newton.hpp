@@ -1,7 +1,7 @@
 #pragma once
 /// Newton's method for square problems (parameters() == 0) and for a problem with its parameters held.
 ///
-///     J dx = -r,   x <- x + dx,   until |r| and |dx| are below tolerance
+///     J dx = -r,   x <- x + dx,   until |dx|, or at the rate of the last two steps the next one, is below tolerance
 ///
 /// Throws std::invalid_argument for options out of range; numerical failure is an Outcome.
 
@@ -13,7 +13,7 @@ enum class Outcome { converged, stalled, diverged, singular, non_finite };
 const char* to_string(Outcome outcome);
 
 struct NewtonOptions {
-  double tolerance = 1e-12;  ///< on the step, relative to 1 + |x|
+  double tolerance = 1e-12;  ///< on the step to come, relative to 1 + |x|
   int max_iterations = 20;
   void validate() const;
 };
