@@ -57,6 +57,8 @@ void RealFactors::restart(const std::complex<double>* z, int m) {
     q_ = low * next;
     t_ = high;
   }
+  p_before_ = p_;
+  q_before_ = q_;
   known_ = std::isfinite(p_) && std::isfinite(q_) && std::isfinite(t_);
 }
 
@@ -92,7 +94,9 @@ bool RealFactors::four(const Matrix& a, std::complex<double>* z) {
   const double c1 = -(a(1, 1) * k5 - a(1, 2) * k4 + a(1, 3) * k3 + a(0, 0) * k5 - a(0, 2) * k2 + a(0, 3) * k1 + a(3, 0) * s4 - a(3, 1) * s2 +
                       a(3, 3) * s0 + a(2, 0) * s3 - a(2, 1) * s1 + a(2, 2) * s0);
   const double c0 = s0 * k5 - s1 * k4 + s2 * k3 + s3 * k2 - s4 * k1 + s5 * k0, size = a.norm();
-  const double inverse_size = 1.0 / size;
+  const double inverse_size = 1.0 / size, p_here = p_, q_here = q_;
+  p_ += p_here - p_before_;
+  q_ += q_here - q_before_;
   double previous = 1e-3;
   for (int i = 0; i < most_steps; ++i) {  // Bairstow: the remainder R1 z + R0 of the division by z^2 + p z + q vanishes
     const double r = c3 - p_, s = c2 - q_ - p_ * r, R1 = c1 - p_ * s - q_ * r, R0 = c0 - q_ * s;
@@ -104,6 +108,8 @@ bool RealFactors::four(const Matrix& a, std::complex<double>* z) {
     q_ -= dq;
     const double now = std::max(std::abs(dp), std::abs(dq) * inverse_size) * inverse_size, last = std::exchange(previous, now);
     if (!settled(now, last)) continue;
+    p_before_ = p_here;
+    q_before_ = q_here;
     const double r_end = c3 - p_;
     quadratic_roots(p_, q_, z[0], z[1]);
     quadratic_roots(r_end, c2 - q_ - p_ * r_end, z[2], z[3]);

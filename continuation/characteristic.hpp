@@ -3,8 +3,8 @@
 ///
 ///     z^4 + c3 z^3 + c2 z^2 + c1 z + c0 = (z^2 + p z + q)(z^2 + r z + s),      z^3 + c2 z^2 + c1 z + c0 = (z - t)(z^2 + p z + q)
 ///
-/// Along a branch factors move little: two or three steps. False where they do not settle (factors about to share a root, no factors yet): ask
-/// a general solver and hand its eigenvalues to `restart`.
+/// Along a branch factors move little, and steadily: of the quartic's they are extrapolated; two steps or so. False where they do not settle (factors
+/// about to share a root, no factors yet): ask a general solver and hand its eigenvalues to `restart`.
 
 #include <complex>
 
@@ -23,7 +23,7 @@ class RealFactors {
  private:
   bool three(const Matrix& a, std::complex<double>* z);
   bool four(const Matrix& a, std::complex<double>* z);
-  double t_ = 0.0, p_ = 0.0, q_ = 0.0;
+  double t_ = 0.0, p_ = 0.0, q_ = 0.0, p_before_ = 0.0, q_before_ = 0.0;
   bool known_ = false;
 };
 

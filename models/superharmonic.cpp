@@ -55,8 +55,16 @@ void SuperharmonicFlow::evaluate(const R* u, R* r, R* j) const {
   for (int row = 0; row < 4; ++row) r[row] = r[row] * scale;
   for (int i = 0; i < K; ++i) {
     R* column = j + 4 * (4 + i);
-    slow_flow<R, R>(part([i](const P& x) { return x.d[std::size_t(i)]; }), u1, v1, u2, v2, {column, 4});
-    for (int row = 0; row < 4; ++row) column[row] = (column[row] - r[row] * cp.nw2.d[std::size_t(i)]) * scale;
+    const auto at = static_cast<std::size_t>(i);
+    if (model().cable_moves()) {
+      slow_flow<R, R>(part([at](const P& x) { return x.d[at]; }), u1, v1, u2, v2, {column, 4});
+    } else {  // the cubic terms stay
+      column[0] = -(u1 * cp.damping1.d[at]) - cp.detuning1.d[at] * v1;
+      column[1] = -(v1 * cp.damping1.d[at]) + cp.detuning1.d[at] * u1;
+      column[2] = -(u2 * cp.damping2.d[at]) - cp.detuning2.d[at] * v2 - cp.load_im.d[at];
+      column[3] = -(v2 * cp.damping2.d[at]) + cp.detuning2.d[at] * u2 + cp.load_re.d[at];
+    }
+    for (int row = 0; row < 4; ++row) column[row] = (column[row] - r[row] * cp.nw2.d[at]) * scale;
   }
   const R &g1 = cp.g1.v, &g2 = cp.g2.v, &g3 = cp.g3.v, &g4 = cp.g4.v, &d1 = cp.damping1.v, &d2 = cp.damping2.v;
   const R a = u1 * u1 + v1 * v1, b = u2 * u2 + v2 * v2;

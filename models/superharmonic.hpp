@@ -76,6 +76,7 @@ class SuperharmonicModel {
 
   const StayParameters<double>& stay() const { return stay_; }
   const std::vector<Lens>& lenses() const { return lenses_; }
+  bool cable_moves() const { return cable_moves_; }  ///< a lens turns a number of the cable, and with it the cubic terms
   int order() const { return options_.order; }
 
  private:

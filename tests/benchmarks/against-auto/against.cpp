@@ -101,7 +101,7 @@ void print_coefficients() {
 }
 
 Curve curve_of(const Branch& b) {
-  Curve c{b.points(), {}};
+  Curve c{b.points() + static_cast<int>(b.special.size()), {}};  // as AUTO counts
   for (const auto& s : b.special) c.special.push_back({to_string(s.type), s.u[4]});
   return c;
 }
@@ -165,7 +165,7 @@ void compare(const std::string& program, const std::filesystem::path& work, int 
     our_process.push_back(time_process(work, {self, "walk"}));
     for (auto& row : rows) {
       row.theirs.push_back(time_process(work / row.directory, {program}));
-      constexpr int walks = 10;
+      constexpr int walks = 50;
       Branch b;
       const double begin = cpu_microseconds();
       for (int k = 0; k < walks; ++k) b = row.whirling ? whirl[row.short_steps].whirling() : whirl[row.short_steps].in_plane();
@@ -237,13 +237,14 @@ void compare_orbits(const std::string& program, const std::filesystem::path& wor
   double truncation = 0.0;
   for (int i = 0; i < b.points(); ++i) truncation = std::max(truncation, hb.truncation(b.u(i), b.tangent(i)).error);
   const Curve auto_curve = read_diagram(work / "sweep" / "fort.7");
-  const double a = median(theirs) / auto_curve.points, w = median(ours) / b.points();
+  const int our_points = curve_of(b).points;
+  const double a = median(theirs) / auto_curve.points, w = median(ours) / our_points;
   fmt::print("\nExact periodic motions in plane, U = 0.5 m, omega = {} to {} rad/s, with multipliers and events; processor time, medians of {}\n",
              options.lower, options.upper, repetitions);
   fmt::print(
       "AUTO (60 intervals of 4, tolerances 1e-9): {} points, {:.0f} us each. Whirl ({} harmonics, truncation {:.1e}): {} points, {:.0f} us each. "
       "Ratio {:.1f}.\n\n",
-      auto_curve.points, a, harmonics, truncation, b.points(), w, a / w);
+      auto_curve.points, a, harmonics, truncation, our_points, w, a / w);
   fmt::print("{:<6}{:>16}{:>16}{:>12}\n", "type", "AUTO", "Whirl", "difference");
   for (const auto& s : b.special)
     for (const auto& t : auto_curve.special)
