@@ -119,9 +119,12 @@ Curve::Report Curve::correct(Out u, In normal, In anchor) {
 bool Curve::settle(Out u, In anchor, double previous, Report& report) {
   right_side(u, anchor);
   lu_.solve_two(rhs_, last_, solution_, tangent_);
-  const double size = length_of(solution_), rate = size / previous;
+  // Where the step before was tiny, what this one adds is rounding and says nothing of the contraction: that is at most most_curved times it.
+  constexpr double most_curved = 1e3, tiny = 1e-6;
+  const double size = length_of(solution_), rate = std::min(size / previous, most_curved * previous);
   if (report.iterations == 1) report.contraction = rate;
-  if (!(size <= options_.last_step && (size == 0.0 || size * rate < options_.tolerance))) return false;
+  const bool rounding = previous < tiny && size > 0.1 * previous && size < tiny;
+  if (!(size == 0.0 || rounding || (size <= options_.last_step && size * rate < options_.tolerance))) return false;
   spread(solution_, 1.0, step_);
   u += step_;
   ++report.iterations;
