@@ -90,7 +90,7 @@ void SuperharmonicFlow::evaluate(const R* u, R* r, R* j) const {
 }
 
 template <int K>
-void SuperharmonicFlow::linearise(In u, double* r, MatrixOut j) const {
+void SuperharmonicFlow::field_and_jacobian(In u, double* r, MatrixOut j) const {
   double own[4 * (4 + K)];
   evaluate<K, double>(u.data(), r, own);
   for (int c = 0; c < 4 + K; ++c)
@@ -114,11 +114,11 @@ void SuperharmonicFlow::second_along(In u, In v, MatrixOut h) const {
 void SuperharmonicFlow::do_linearise(In u, Out r, MatrixOut j) const {
   switch (parameters()) {
     case 0:
-      return linearise<0>(u, r.data(), j);
+      return field_and_jacobian<0>(u, r.data(), j);
     case 1:
-      return linearise<1>(u, r.data(), j);
+      return field_and_jacobian<1>(u, r.data(), j);
     case 2:
-      return linearise<2>(u, r.data(), j);
+      return field_and_jacobian<2>(u, r.data(), j);
     default:
       throw std::logic_error("at most two lenses");
   }

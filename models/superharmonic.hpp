@@ -117,7 +117,7 @@ class SuperharmonicFlow : public DualProblem<SuperharmonicModel> {
   template <int K, class R>
   void evaluate(const R* u, R* r, R* j) const;
   template <int K>
-  void linearise(In u, double* r, MatrixOut j) const;
+  void field_and_jacobian(In u, double* r, MatrixOut j) const;
   template <int K>
   void second_along(In u, In v, MatrixOut h) const;
 };

@@ -59,7 +59,7 @@ TEST_CASE("the slow flow is the harmonic projection of the modal equations") {
   }
 }
 
-TEST_CASE("hand-written Jacobian equals the dual one, in every lens") {
+TEST_CASE("hand-written Jacobian and second derivative equal the dual ones, in every lens") {
   for (const auto& name : Lens::names()) {
     const Lens lens(name);
     const auto stay = oresund();
@@ -73,6 +73,11 @@ TEST_CASE("hand-written Jacobian equals the dual one, in every lens") {
     INFO(name);
     CHECK((j - k).lpNorm<Eigen::Infinity>() < 1e-12 * (1.0 + k.lpNorm<Eigen::Infinity>()));
     CHECK((r - s).norm() < 1e-13 * (1.0 + s.norm()));
+    const Vector along = point({0.5, 1.3, -0.8, 0.9, 0.7});
+    Matrix h2(4, 5), k2(4, 5);
+    flow.second(u, along, h2);
+    dual.second(u, along, k2);
+    CHECK((h2 - k2).lpNorm<Eigen::Infinity>() < 1e-12 * (1.0 + k2.lpNorm<Eigen::Infinity>()));
     // and the column of the parameter equals a central difference
     const double p = u[4], h = 1e-5 * (std::abs(p) + 1e-3);
     Vector up = u, down = u, rp(4), rm(4);

@@ -57,18 +57,18 @@ const Branch& named(const Network& net, const std::string& born_at) {
   return net.branches().front();
 }
 
-// Points of a branch at which the slow flow and the Floquet multipliers of the same motion count as many unstable directions.
-int agreeing(const SlowFlow& flow, const Branch& b) {
+// Frequencies at which the slow flow and the Floquet multipliers of the same motion do not count as many unstable directions.
+std::vector<double> disagreeing(const SlowFlow& flow, const Branch& b) {
   const Ansatz& a = flow.ansatz();
   Floquet floquet(flow.system_at(b.u(0)), a.highest(), a.nu);
-  int same = 0;
+  std::vector<double> where;
   for (int i = 0; i < b.points(); ++i) {
     const auto& result = floquet.compute(flow.system_at(b.u(i)), flow.balance_state(b.u(i)));
     int unstable = 0;
     for (const auto& mu : result.multipliers) unstable += std::abs(mu) > 1.0 + 1e-9 ? 1 : 0;
-    same += unstable == b.n_unstable(i) ? 1 : 0;
+    if (unstable != b.n_unstable(i)) where.push_back(b.parameter(i));
   }
-  return same;
+  return where;
 }
 
 Eigen::VectorXcd eigenvalues(const Problem& f, const Vector& u) {
@@ -122,14 +122,16 @@ TEST_CASE("slow flow: whirling threshold, frozen linear part and complete ansatz
 }
 
 TEST_CASE("slow flow: stability against Floquet multipliers of the same motion") {
-  // Whirling: all points agree, and the torus points, where the exponents' frequency is 0.05 omega, lie where the exact ones do.
+  // Whirling: all points agree but such as lie between a torus point of the one and of the other, 2.2e-4 apart: there the exponents' frequency is
+  // 0.05 omega, and the slow flow is of first order in it.
   const SlowFlow flow(stay_over_omega(), Ansatz::complete(2, 8), whirling);
   Network net(flow, {.walk = {.lower = 1.2, .upper = 2.0}, .depth = 1});
   REQUIRE(net.add_seed(newton(flow, flow.linear_response(one(1.2))).x, "linear response"));
   net.switch_branches();
   const Branch& whirl = named(net, "B1:BP1");
-  CHECK(agreeing(flow, whirl) == whirl.points());
-  CHECK(worst(parameters_of(whirl, EventType::hopf), {1.74827864899, 1.82943396851}) < 2.5e-4);  // first order in the exponent: 2.2e-4
+  const std::vector<double> torus = {1.74827864899, 1.82943396851};
+  for (const double omega : disagreeing(flow, whirl)) CHECK(std::min(std::abs(omega - torus[0]), std::abs(omega - torus[1])) < 2.5e-4);
+  CHECK(worst(parameters_of(whirl, EventType::hopf), torus) < 2.5e-4);
   CHECK(worst(parameters_of(whirl, EventType::fold), {1.82142291407, 1.74819639879, 1.82961925092}) < 1e-5);
 }
 
