@@ -1,5 +1,7 @@
 #include "continuation/events.hpp"
 
+#include <Eigen/Eigenvalues>
+#include <Eigen/SVD>
 #include <algorithm>
 #include <memory>
 
@@ -194,8 +196,11 @@ bool EventFinder::locate(const Kind& kind, const Sample& a, const Sample& b, Spe
     double part = f * g < 0.0 ? f / (f - g) : 0.5;
     if (i % 3 == 2) part = 0.5;
     part = std::clamp(part, 0.05, 0.95);
-    const double sigma = from + part * (to - from);
-    if (!curve_.between(a, b, sigma, middle)) return false;
+    double sigma = from + part * (to - from);
+    if (!curve_.between(a, b, sigma, middle)) {  // a secant may hit a branch point to the last digit, where no tangent is
+      sigma = from + (part < 0.5 ? 1.1 : 0.9) * (sigma - from);
+      if (!curve_.between(a, b, sigma, middle)) return false;
+    }
     if (has_system && (i < 3 || i % 6 == 0) && solve(kind, middle, out) && inside(out)) return true;
     if (has(lo.signature, middle.signature)) {
       hi = middle;
@@ -219,7 +224,7 @@ bool EventFinder::locate(const Kind& kind, const Sample& a, const Sample& b, Spe
   return true;
 }
 
-bool EventFinder::solve(const Kind& kind, const Sample& near, SpecialPoint& out) {
+bool EventFinder::solve(const Kind& kind, const Sample& near, SpecialPoint& out, double frequency) {
   const Problem& f = curve_.problem();
   if (f.derivatives() < 2) return false;
   if (kind.type == EventType::period_doubling) return solve_period_doubling(kind.block, near, out);
@@ -251,7 +256,11 @@ bool EventFinder::solve(const Kind& kind, const Sample& near, SpecialPoint& out)
     case EventType::unresolved:
       return false;
   }
-  const Vector start = system->unknowns(near.u);
+  Vector start = system->unknowns(near.u);
+  if (kind.type == EventType::hopf && frequency > 0.0) {  // this pair, not the one nearest the axis
+    start[static_cast<int>(state.size()) + 1] = frequency * frequency;
+    system->update_borders(start);
+  }
   if (!start.allFinite()) return false;
   NewtonResult r = newton(*system, start, {.tolerance = 1e-13, .max_iterations = 12});
   // At rounding level Newton may wander without meeting 1e-13: a tiny residual and a tiny last step count.
@@ -312,7 +321,6 @@ bool EventFinder::accept(const Kind& kind, const Sample& a, const Sample& b, Spe
     const int pairs_right = unstable_pairs(curve_.eigenvalues());
     const auto shown = changes(left.signature, right.signature);
     const auto same = [&](const Kind& k) { return k.type == kind.type && k.block == kind.block; };
-    const auto is_hopf = [](const Kind& k) { return k.type == EventType::hopf; };
     if (std::none_of(shown.begin(), shown.end(), same)) continue;
     point.unstable_before = left.signature.total_unstable();
     point.unstable_after = right.signature.total_unstable();
@@ -326,28 +334,85 @@ bool EventFinder::accept(const Kind& kind, const Sample& a, const Sample& b, Spe
       point.tangent = left.tangent;
     }
     found_.push_back(point);
-    for (const auto& other : shown) {  // coincident with another kind: each has its own regular system
-      SpecialPoint second;
-      if (same(other)) continue;
-      if (solve(other, left, second) && curve_.length(second.u - point.u) < 2.0 * delta) {
-        copy_sides(point, second);
-        found_.push_back(second);
-      } else {
-        report_unresolved(left, right);
-      }
-    }
-    // A real eigenvalue through zero changes the count by one and so hides a pair that crosses within the same delta.
-    SpecialPoint pair;
-    if (!curve_.orbit() && kind.type != EventType::hopf && pairs_left != pairs_right && std::none_of(shown.begin(), shown.end(), is_hopf) &&
-        solve({EventType::hopf, kind.block}, left, pair) && curve_.length(pair.u - point.u) < 2.0 * delta) {
-      copy_sides(point, pair);
-      found_.push_back(pair);
-    }
+    find_coincident(kind, point, left, right, delta, pairs_left, pairs_right);
     explain(a, left, depth + 1);
     explain(right, b, depth + 1);
     return true;
   }
   return false;
+}
+
+// Other kinds at the same place: each has its own regular system.
+void EventFinder::find_coincident(const Kind& kind, const SpecialPoint& point, const Sample& left, const Sample& right, double delta, int pairs_left,
+                                  int pairs_right) {
+  const auto shown = changes(left.signature, right.signature);
+  const auto is = [](const Kind& k, EventType type) { return k.type == type; };
+  const bool upright = turns_at_branch_point(shown, point);
+  if (upright && is(kind, EventType::fold)) found_.pop_back();  // only the branch point itself is told
+  for (const auto& other : shown) {
+    SpecialPoint second;
+    if ((other.type == kind.type && other.block == kind.block) || (upright && is(other, EventType::fold))) continue;
+    if (solve(other, left, second) && curve_.length(second.u - point.u) < 2.0 * delta) {
+      copy_sides(point, second);
+      found_.push_back(second);
+    } else {
+      report_unresolved(left, right);
+    }
+  }
+  if (curve_.orbit()) return;
+  // A real eigenvalue through zero changes the count by one and so hides a pair that crosses within the same delta.
+  SpecialPoint pair;
+  if (!is(kind, EventType::hopf) && pairs_left != pairs_right &&
+      std::none_of(shown.begin(), shown.end(), [&](const Kind& k) { return is(k, EventType::hopf); }) &&
+      solve({EventType::hopf, kind.block}, left, pair) && curve_.length(pair.u - point.u) < 2.0 * delta) {
+    copy_sides(point, pair);
+    found_.push_back(pair);
+  }
+  if (is(kind, EventType::hopf)) find_further_pairs(kind, point, left, right, delta);
+}
+
+// A branch that leaves a pitchfork upright turns there: the parameter has an extremum, but r_p lies in the range of r_x. That is no fold.
+bool EventFinder::turns_at_branch_point(const std::vector<Kind>& shown, const SpecialPoint& point) const {
+  const auto has = [&](EventType type) {
+    return std::any_of(shown.begin(), shown.end(), [type](const Kind& k) { return k.type == type && k.block == 0; });
+  };
+  if (!has(EventType::fold) || !has(EventType::branch_point)) return false;
+  const Problem& f = curve_.problem();
+  Matrix j(f.size(), f.size() + f.parameters());
+  f.jacobian(point.u, j);
+  const Indices& state = curve_.blocks().indices[0];
+  const auto m = static_cast<Eigen::Index>(state.size());
+  if (m < 2) return true;
+  const Matrix a = j(state, state);
+  const Vector singular = Eigen::JacobiSVD<Matrix>(a).singularValues();
+  return singular[m - 2] > 1e-6 * j.norm();  // a fold on which another branch starts has two zero eigenvalues
+}
+
+// More than one pair crossed within delta: each has its own frequency. Pairs that share even that are told as unresolved.
+void EventFinder::find_further_pairs(const Kind& kind, const SpecialPoint& point, const Sample& left, const Sample& right, double delta) {
+  const auto slot = static_cast<std::size_t>(kind.block);
+  const bool turned = left.signature.negative[slot] != right.signature.negative[slot];
+  int missing = (std::abs(right.signature.unstable[slot] - left.signature.unstable[slot]) - (turned ? 1 : 0)) / 2 - 1;
+  if (missing <= 0) return;
+  Matrix j(curve_.problem().size(), curve_.problem().size() + curve_.problem().parameters());
+  curve_.problem().jacobian(point.u, j);
+  const Indices& block = curve_.blocks().indices[slot];
+  Eigen::VectorXcd z = Eigen::EigenSolver<Matrix>(Matrix(j(block, block)), false).eigenvalues();
+  std::sort(z.begin(), z.end(), [](const auto& p, const auto& q) { return std::abs(p.real()) < std::abs(q.real()); });
+  for (const auto& value : z) {
+    SpecialPoint pair;
+    if (missing == 0 || !(value.imag() > 0.0)) continue;
+    if (!solve(kind, left, pair, value.imag()) || curve_.length(pair.u - point.u) >= 2.0 * delta) continue;
+    const bool known = std::any_of(found_.begin(), found_.end(), [&](const SpecialPoint& p) {
+      return p.type == pair.type && p.block == pair.block && std::abs(p.frequency - pair.frequency) < 1e-6 * p.frequency &&
+             curve_.length(p.u - pair.u) < 2.0 * delta;
+    });
+    if (known) continue;
+    copy_sides(point, pair);
+    found_.push_back(pair);
+    --missing;
+  }
+  if (missing > 0) report_unresolved(left, right);
 }
 
 bool EventFinder::mirror_crossing(const Sample& a, const Sample& b, int r, SpecialPoint& out) {

@@ -48,8 +48,12 @@ class EventFinder {
   void look_closer(const Sample& before, const Sample& a, const Sample& b, int depth);
   void look_at_extrema(const Sample& a, const Sample& middle, const Sample& b, int depth);
   bool locate(const Kind& kind, const Sample& a, const Sample& b, SpecialPoint& out);
-  bool solve(const Kind& kind, const Sample& near, SpecialPoint& out);
+  bool solve(const Kind& kind, const Sample& near, SpecialPoint& out, double frequency = 0.0);  // frequency: of the pair meant, 0: the nearest
   bool accept(const Kind& kind, const Sample& a, const Sample& b, SpecialPoint& found, int depth);
+  void find_coincident(const Kind& kind, const SpecialPoint& point, const Sample& left, const Sample& right, double delta, int pairs_left,
+                       int pairs_right);
+  bool turns_at_branch_point(const std::vector<Kind>& shown, const SpecialPoint& point) const;
+  void find_further_pairs(const Kind& kind, const SpecialPoint& point, const Sample& left, const Sample& right, double delta);
   void report_unresolved(const Sample& a, const Sample& b);
   bool solve_period_doubling(int group, const Sample& near, SpecialPoint& out);
   std::unique_ptr<AugmentedSystem> torus_system(int group, const Sample& near) const;

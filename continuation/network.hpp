@@ -56,6 +56,8 @@ class Network {
     bool done = false;  // some branch already leaves or arrives here
   };
   void adopt(Branch branch, int generation);
+  Vector regular_start(const Vector& u0) const;
+  bool repeats(const Branch& branch) const;
   bool same_up_to_mirror(In a, In b) const;
 
   const Problem& problem_;

@@ -106,7 +106,7 @@ class Follower {
   double crossing_real(In y) const;
   bool mirrored(const Vector& a, const Vector& b) const;  // did the part that breaks a symmetry pass zero between a and b?
   bool past_strong_resonance(In y) const;
-  bool symmetric(const Vector& u) const;  // is that part zero next to the rest?
+  bool symmetric(const Vector& u) const;  // is that part zero next to the largest on the curve?
   void locate(const Branch& b, int i, const Test& test, double from, double to, DefiningCurve& curve);
 
   const Problem& f_;
@@ -116,6 +116,7 @@ class Follower {
   mutable Vector sense_;
   Blocks blocks_;
   std::unique_ptr<AugmentedSystem> system_;
+  std::vector<double> largest_odd_;  // on the curve, for each reflection
 };
 
 SpecialPoint Follower::at(In y) const {
@@ -185,7 +186,7 @@ bool Follower::symmetric(const Vector& u) const {
     if (std::find(blocks_.active.begin(), blocks_.active.end(), r) != blocks_.active.end()) continue;
     double odd = 0.0;
     for (int i : odd_coordinates(f_, r)) odd = std::max(odd, std::abs(u[i]));
-    if (odd < 1e-2 * u.head(f_.size()).norm()) return true;
+    if (odd < 1e-2 * largest_odd_[static_cast<std::size_t>(r)]) return true;
   }
   return false;
 }
@@ -315,6 +316,12 @@ DefiningCurve Follower::run(double p2, const Observer& observer) {
   curve.coefficient.resize(count);
   curve.frequency.resize(count);
   curve.residual.resize(count);
+  for (int r = 0; r < static_cast<int>(f_.reflections().size()); ++r) {
+    double largest = 0.0;
+    for (int i = 0; i < count; ++i)
+      for (const int k : odd_coordinates(f_, r)) largest = std::max(largest, std::abs(base(b.u(i))[k]));
+    largest_odd_.push_back(largest);
+  }
   sense_ = Vector();
   double sense_at_point = 1.0, nearest = std::numeric_limits<double>::infinity();
   const auto all = tests();
@@ -347,6 +354,12 @@ DefiningCurve Follower::run(double p2, const Observer& observer) {
     e.residual = s.residual;
     e.arclength = s.arclength;
     if (symmetric(e.u)) continue;
+    // Where the curve crosses another of its kind its system is singular, and one turn may be met several times.
+    const auto again = [&](const CodimensionTwo& known) {
+      const double w1 = o.range1[1] - o.range1[0], w2 = o.range2[1] - o.range2[0];
+      return known.type == e.type && std::abs(known.u[n] - e.u[n]) < 1e-6 * w1 && std::abs(known.u[n + 1] - e.u[n + 1]) < 1e-6 * w2;
+    };
+    if (std::any_of(curve.special.begin(), curve.special.end(), again)) continue;
     curve.special.push_back(std::move(e));
   }
   return curve;

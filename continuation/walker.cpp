@@ -10,6 +10,10 @@
 
 namespace whirl::continuation {
 
+namespace {
+constexpr double rounding = 1e-11;  // |x| below it is zero: what Newton leaves of a coordinate that is zero
+}
+
 void WalkOptions::validate() const {
   if (!(lower < upper) || !std::isfinite(lower) || !std::isfinite(upper))
     throw std::invalid_argument(fmt::format("the parameter range must be increasing and finite, got [{}, {}]", lower, upper));
@@ -45,6 +49,7 @@ struct Walker::State {
   double step, step_taken = 0.0, arclength = 0.0, largest_x = 0.0;
   double factor = 1.0;  // by which the next step may change
   int accepted = 0;
+  bool scale_from_slope = false;
   bool has_signature = false;  // of `now`; not at a branch point, where it is undefined
   StopReason stop = StopReason::none;
   const Observer* observer = nullptr;
@@ -108,6 +113,7 @@ bool Walker::begin(const Vector& u0, const Vector& direction, bool from_branch_p
   s.branch.active_reflections = active;
   const double range = options_.upper - options_.lower;
   s.largest_x = u0.head(n).norm();
+  if (s.largest_x < rounding) s.largest_x = 0.0;  // Newton's remainder tells nothing of the size of x
   s.curve.set_scales(s.largest_x > 0.0 ? s.largest_x : 1.0, range);
   s.now.u = u0;
   if (from_branch_point) {
@@ -133,9 +139,11 @@ bool Walker::begin(const Vector& u0, const Vector& direction, bool from_branch_p
   } else {
     const Vector normal = direction;
     if (!s.curve.sample(u0, normal, s.now)) return false;
-    if (s.largest_x == 0.0 && s.now.tangent.head(n).norm() > 0.0) {  // starts at rest: the slope tells the size of x
-      const double slope = s.now.tangent.head(n).norm() / std::abs(s.now.tangent[n]);
-      s.curve.set_scales(std::clamp(slope * range, 1e-12, 1e12), range);
+    const double slope = s.now.tangent.head(n).norm() / std::abs(s.now.tangent[n]);
+    if (s.largest_x == 0.0 && slope * range > rounding && slope * range < 1e8) {  // starts at rest: the slope, unless upright, tells the size of x
+      s.curve.set_scales(slope * range, range);
+      s.scale_from_slope = true;
+      s.step = std::max(options_.min_step, 0.05 * options_.initial_step);
       if (!s.curve.sample(u0, normal, s.now)) return false;
     }
     s.has_signature = true;
@@ -192,6 +200,8 @@ bool Walker::correct() {
   s.factor = std::clamp(std::max({by_angle, by_contraction, by_distance}), 0.5, 2.0);
   if (angle > limit && !first_off_branch_point && s.step > 4.0 * options_.min_step) return false;
   s.step_taken = s.curve.length(s.next.u - s.now.u);
+  // Newton has gone sideways by half the step or more: to another part of the curve, though it may run the same way there.
+  if (s.step_taken > 1.12 * s.step && !first_off_branch_point && s.step > 4.0 * options_.min_step) return false;
   s.next.lead = s.curve.leads_now();
   s.eigenvalues = s.curve.eigenvalues();
   s.next.residual = s.report.residual;
@@ -237,7 +247,12 @@ void Walker::shorten_step() {
   State& s = *s_;
   s.stop = StopReason::none;
   s.step *= 0.5;
-  if (s.step < options_.min_step) s.stop = StopReason::min_step;
+  if (s.step >= options_.min_step) return;
+  // A branch point on the end of the range has no tangent to end on.
+  const int n = problem_.size();
+  const double p = s.now.u[n], near = 1e-8 * (options_.upper - options_.lower);
+  const bool at_end = s.now.tangent[n] > 0.0 ? p > options_.upper - near : p < options_.lower + near;
+  s.stop = at_end ? StopReason::parameter_bound : StopReason::min_step;
 }
 
 void Walker::lengthen_step() {
@@ -364,7 +379,6 @@ void Walker::find_peak(const Observable& peak) {
 
 void Walker::accept() {
   State& s = *s_;
-  const int n = problem_.size();
   if (s.accepted > 2 && close_loop()) return;
   s.arclength += s.step_taken;
   s.branch.append(s.next.u, s.next.tangent, s.arclength, s.next.residual, s.step, s.next.iterations, s.next.signature.total_unstable(),
@@ -374,18 +388,31 @@ void Walker::accept() {
   if (!s.has_signature) s.before = s.now;
   s.has_signature = true;
   ++s.accepted;
-  const double size = s.now.u.head(n).norm();
-  if (size > 2.0 * s.largest_x || s.largest_x == 0.0) {
-    s.largest_x = size;
-    if (size > s.curve.x_scale()) {
-      s.curve.set_scales(size, options_.upper - options_.lower);
-      for (auto* p : {&s.before, &s.now}) p->tangent /= s.curve.length(p->tangent);
-      s.start_tangent /= s.curve.length(s.start_tangent);  // close_loop measures in the new metric
-      s.step_taken = s.curve.length(s.now.u - s.before.u);
-    }
-  }
+  keep_scale();
   if (s.stop == StopReason::none && s.branch.points() == s.branch.capacity()) s.stop = StopReason::max_points;
   if (s.stop == StopReason::none && s.observer && *s.observer && !(*s.observer)(s.branch, s.branch.points() - 1)) s.stop = StopReason::observer;
+}
+
+// x is measured by the largest met so far; until the parameter has moved, a start at rest knows only the slope it had there.
+void Walker::keep_scale() {
+  State& s = *s_;
+  const int n = problem_.size();
+  const double range = options_.upper - options_.lower, size = s.now.u.head(n).norm(), moved = std::abs(s.now.u[n] - s.start_u[n]);
+  double scale = s.curve.x_scale();
+  if (size > 2.0 * s.largest_x || s.largest_x == 0.0) {
+    s.largest_x = size;
+    scale = std::max(scale, size);
+  }
+  if (s.scale_from_slope) {
+    const double by_chord = std::max(s.largest_x, size * range / moved);
+    if (by_chord < 0.5 * scale && by_chord > rounding) scale = by_chord;
+    s.scale_from_slope = moved < 0.05 * range;
+  }
+  if (scale == s.curve.x_scale()) return;
+  s.curve.set_scales(scale, range);
+  for (auto* p : {&s.before, &s.now}) p->tangent /= s.curve.length(p->tangent);
+  s.start_tangent /= s.curve.length(s.start_tangent);  // close_loop measures in the new metric
+  s.step_taken = s.curve.length(s.now.u - s.before.u);
 }
 
 // Does the step pass the first point in its sense? Then the curve is closed.
@@ -399,8 +426,17 @@ bool Walker::close_loop() {
   s.predicted = s.start_u;
   Sample at;
   const Vector chord = s.next.u - s.now.u, before_start = s.now.u + (ahead / s.step_taken) * chord;
+  const double apart = s.curve.length(before_start - s.start_u);
+  if (s.branch.start_reason == StopReason::known_branch_point) {  // no plane to solve in: the curve passes it, in its direction
+    if (apart > 0.05 * s.step_taken || s.curve.dot(s.now.tangent, s.start_tangent) < 0.95) return false;
+    s.arclength += s.curve.length(s.start_u - s.now.u);
+    s.branch.append(s.start_u, s.start_tangent, s.arclength, s.branch.residual(0), s.step, 0, s.branch.n_unstable(0), &s.eigenvalues);
+    std::erase_if(s.branch.special, [&s](const SpecialPoint& e) { return e.arclength > s.arclength - 1e-6; });
+    s.stop = StopReason::closed_loop;
+    return true;
+  }
   // Off the chord by the curvature only, and Newton from there in the start's plane must come to the start.
-  if (s.curve.length(before_start - s.start_u) > 0.3 * s.step_taken) return false;
+  if (apart > 0.3 * s.step_taken) return false;
   Vector guess = before_start;
   if (!s.curve.sample(guess, s.start_tangent, at)) return false;
   const double shift = s.curve.dot(s.start_u - at.u, s.start_tangent);

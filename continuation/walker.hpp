@@ -73,6 +73,7 @@ class Walker {
   void locate_events();
   bool reach_bound(int index, double bound);
   bool within_bounds(int& index, double& bound) const;
+  void keep_scale();
   bool close_loop();
   void find_peaks_and_values();
   void find_peak(const Observable& peak);
