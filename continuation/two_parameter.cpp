@@ -291,8 +291,13 @@ DefiningCurve Follower::run(double p2, const Observer& observer) {
   };
   Walker walker(*system_, o.walk);
   const Branch b = [&] {
-    // Polished at its own p2 first.
-    const NewtonResult start = newton(*system_, system_->unknowns(u), {.tolerance = 1e-12, .max_iterations = 20});
+    // Polished at its own p2 first; of several pairs the one meant.
+    Vector near = system_->unknowns(u);
+    if (point_.type == EventType::hopf && std::isfinite(point_.frequency)) {
+      near[static_cast<int>(blocks_.indices[0].size()) + 1] = point_.frequency * point_.frequency;
+      system_->update_borders(near);
+    }
+    const NewtonResult start = newton(*system_, near, {.tolerance = 1e-12, .max_iterations = 20});
     if (!start.ok()) throw std::invalid_argument(fmt::format("the special point does not satisfy its system: {}", to_string(start.outcome)));
     const Vector up = Vector::Unit(system_->size() + 1, system_->size());
     const auto walk = [&](const Vector& direction) {
@@ -309,6 +314,7 @@ DefiningCurve Follower::run(double p2, const Observer& observer) {
   DefiningCurve curve;
   curve.type = point_.type;
   curve.subtype = point_.subtype;
+  curve.block = point_.block;
   curve.start_reason = b.start_reason;
   curve.stop_reason = b.stop_reason;
   const int count = b.points();
@@ -391,6 +397,52 @@ DefiningCurve follow(const Problem& problem2, const SpecialPoint& point, double 
   const auto* orbit = dynamic_cast<const OrbitProblem*>(&problem2);
   if (orbit && point.type == EventType::period_doubling) return follow_doubling(*orbit, point, p2, options, observer);
   return Follower(problem2, point, options).run(p2, observer);
+}
+
+std::vector<SpecialPoint> curves_through(const Problem& f, const DefiningCurve& curve, const CodimensionTwo& point) {
+  const int n = f.size();
+  std::vector<SpecialPoint> starts;
+  SpecialPoint start;
+  start.u = point.u.head(n + 1);
+  const bool double_zero = point.type == "BT", pair_too = point.type == "ZH" || point.type == "HH";
+  if (!f.is_flow() || !(double_zero || pair_too)) return starts;
+  if (curve.type == EventType::hopf && point.type != "HH") {
+    start.type = EventType::fold;
+    starts.push_back(start);
+    return starts;
+  }
+  // Of the pairs on the axis, those of the curve itself left out.
+  start.type = EventType::hopf;
+  start.block = curve.block;
+  if (double_zero) {
+    starts.push_back(start);
+    return starts;
+  }
+  double own = std::nan("");  // frequency of the curve there
+  double nearest = std::numeric_limits<double>::infinity();
+  for (Eigen::Index i = 0; i < curve.u.cols() && curve.type == EventType::hopf; ++i)
+    if (const double apart = (curve.u.col(i) - point.u).norm(); apart < nearest) {
+      nearest = apart;
+      own = curve.frequency[i];
+    }
+  const Blocks blocks = make_blocks(f, active_reflections(f, point.u.head(n)));
+  Matrix j(n, n + f.parameters());
+  f.jacobian(point.u, j);
+  double best = std::numeric_limits<double>::infinity();
+  for (int k = 0; k < static_cast<int>(blocks.indices.size()); ++k) {
+    const Indices& block = blocks.indices[static_cast<std::size_t>(k)];
+    if (block.empty()) continue;
+    const Eigen::VectorXcd eigenvalues = Eigen::EigenSolver<Matrix>(Matrix(j(block, block)), false).eigenvalues();
+    for (const auto& z : eigenvalues) {
+      const bool known = k == curve.block && std::abs(z.imag() - own) < 0.02 * own;
+      if (!(z.imag() > 0.0) || known || std::abs(z.real()) >= best) continue;
+      best = std::abs(z.real());
+      start.block = k;
+      start.frequency = z.imag();
+    }
+  }
+  if (best < 1e-4 * (1.0 + start.frequency)) starts.push_back(start);
+  return starts;
 }
 
 }  // namespace whirl::continuation
