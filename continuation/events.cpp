@@ -91,7 +91,27 @@ void EventFinder::explain(const Sample& a, const Sample& b, int depth) {
     explain(middle, b, depth + 1);
     return;
   }
-  report_unresolved(a, b);
+  if (!locate_multiple(a, b)) report_unresolved(a, b);
+}
+
+// An even number of real eigenvalues through zero at one point: no determinant changes sign, but the bracket has shrunk on it.
+bool EventFinder::locate_multiple(const Sample& a, const Sample& b) {
+  const Problem& f = curve_.problem();
+  if (curve_.orbit() || f.derivatives() < 2) return false;
+  SpecialPoint p;
+  p.type = EventType::branch_point;
+  p.subtype = "multiple";
+  const double from = a.lead[0], to = b.lead[0], part = from * to < 0.0 ? from / (from - to) : 0.5;
+  p.u = a.u + part * (b.u - a.u);
+  p.tangent = a.tangent;
+  p.residual = std::max(a.residual, b.residual);
+  if (departures(f, p).size() < 2) return false;
+  p.bracket[0] = std::min(a.u[f.size()], b.u[f.size()]);
+  p.bracket[1] = std::max(a.u[f.size()], b.u[f.size()]);
+  p.unstable_before = a.signature.total_unstable();
+  p.unstable_after = b.signature.total_unstable();
+  found_.push_back(p);
+  return true;
 }
 
 void EventFinder::report_unresolved(const Sample& a, const Sample& b) {
@@ -380,12 +400,15 @@ bool EventFinder::turns_at_branch_point(const std::vector<Kind>& shown, const Sp
   const Problem& f = curve_.problem();
   Matrix j(f.size(), f.size() + f.parameters());
   f.jacobian(point.u, j);
+  // Is r_p in the range of r_x, hence orthogonal to all its left null vectors?
   const Indices& state = curve_.blocks().indices[0];
-  const auto m = static_cast<Eigen::Index>(state.size());
-  if (m < 2) return true;
   const Matrix a = j(state, state);
-  const Vector singular = Eigen::JacobiSVD<Matrix>(a).singularValues();
-  return singular[m - 2] > 1e-6 * j.norm();  // a fold on which another branch starts has two zero eigenvalues
+  const Vector rp = j(state, f.size());
+  const Eigen::JacobiSVD<Matrix> svd(a, Eigen::ComputeFullU);
+  const double small = 1e-6 * j.norm();
+  for (Eigen::Index k = 0; k < a.rows(); ++k)
+    if (svd.singularValues()[k] <= small && std::abs(svd.matrixU().col(k).dot(rp)) > small) return false;
+  return true;
 }
 
 // More than one pair crossed within delta: each has its own frequency. Pairs that share even that are told as unresolved.

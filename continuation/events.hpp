@@ -54,6 +54,7 @@ class EventFinder {
                        int pairs_right);
   bool turns_at_branch_point(const std::vector<Kind>& shown, const SpecialPoint& point) const;
   void find_further_pairs(const Kind& kind, const SpecialPoint& point, const Sample& left, const Sample& right, double delta);
+  bool locate_multiple(const Sample& a, const Sample& b);
   void report_unresolved(const Sample& a, const Sample& b);
   bool solve_period_doubling(int group, const Sample& near, SpecialPoint& out);
   std::unique_ptr<AugmentedSystem> torus_system(int group, const Sample& near) const;

@@ -155,12 +155,16 @@ void Network::adopt(Branch branch, int generation) {
   branch.name = fmt::format("{}{}", prefix, number);
   for (auto& s : branch.special) set_normal_form(problem_, s);
   const int index = static_cast<int>(branches_.size());
+  branch.mirror_image = branch.active_reflections.size() < problem_.reflections().size();
   branch.isola = generation == 0 && branch.stop_reason == StopReason::closed_loop;
   int count = 0;
   for (auto& s : branch.special) {
     if (s.type != EventType::branch_point) continue;
     ++count;
-    const auto known = std::find_if(junctions_.begin(), junctions_.end(), [&](const Junction& j) { return same_up_to_mirror(j.point.u, s.u); });
+    // Two symmetries may break at one point of a branch: two junctions.
+    const auto known = std::find_if(junctions_.begin(), junctions_.end(), [&](const Junction& j) {
+      return same_up_to_mirror(j.point.u, s.u) && (j.branch != index || j.point.block == s.block);
+    });
     if (known != junctions_.end()) {
       branch.isola = false;
       known->done = true;  // this branch ends at a point where another would have been switched to it
