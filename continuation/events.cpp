@@ -438,6 +438,15 @@ void EventFinder::find_further_pairs(const Kind& kind, const SpecialPoint& point
   if (missing > 0) report_unresolved(left, right);
 }
 
+bool EventFinder::branch_point_at(const Sample& near, SpecialPoint& out) {
+  if (curve_.orbit() || !solve({EventType::branch_point, 0}, near, out) || curve_.length(out.u - near.u) > 1e-6) return false;
+  const double p = out.u[out.u.size() - 1], q = near.u[near.u.size() - 1];
+  out.bracket[0] = std::min(p, q);
+  out.bracket[1] = std::max(p, q);
+  out.unstable_before = out.unstable_after = near.signature.total_unstable();
+  return true;
+}
+
 bool EventFinder::mirror_crossing(const Sample& a, const Sample& b, int r, SpecialPoint& out) {
   const Problem& f = curve_.problem();
   const Indices odd = odd_coordinates(f, r);

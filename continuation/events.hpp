@@ -32,6 +32,9 @@ class EventFinder {
   std::vector<SpecialPoint> find(const Sample& before, const Sample& a, const Sample& b, bool last = false);
   bool turns_at(const Sample& before, const Sample& a, const Sample& b) const;
 
+  /// A branch point next to `near`, where a walk can go no further because its range ends on it.
+  bool branch_point_at(const Sample& near, SpecialPoint& out);
+
   /// The branch point on the symmetric branch that lies between a and b if reflection `r` of the problem changes the sign of a state's odd part.
   bool mirror_crossing(const Sample& a, const Sample& b, int r, SpecialPoint& out);
 

@@ -253,6 +253,10 @@ void Walker::shorten_step() {
   const double p = s.now.u[n], near = 1e-8 * (options_.upper - options_.lower);
   const bool at_end = s.now.tangent[n] > 0.0 ? p > options_.upper - near : p < options_.lower + near;
   s.stop = at_end ? StopReason::parameter_bound : StopReason::min_step;
+  SpecialPoint last;
+  if (!at_end || !options_.locate_events || !s.has_signature || !s.finder.branch_point_at(s.now, last)) return;
+  last.arclength = s.arclength + s.curve.length(last.u - s.now.u);
+  s.branch.special.push_back(std::move(last));
 }
 
 void Walker::lengthen_step() {
