@@ -182,6 +182,13 @@ void Network::add_branch_point(const SpecialPoint& point, const std::string& ori
   if (!known) junctions_.push_back({point, -1, origin, 0, false});
 }
 
+std::vector<std::string> Network::not_followed() const {
+  std::vector<std::string> all;
+  for (const auto& j : junctions_)
+    if (!j.done) all.push_back(j.origin);
+  return all;
+}
+
 void Network::switch_branches() {
   for (std::size_t i = 0; i < junctions_.size(); ++i) {
     if (stopped_ || static_cast<int>(branches_.size()) >= options_.max_branches) return;

@@ -106,6 +106,7 @@ class Follower {
   double crossing_real(In y) const;
   bool mirrored(const Vector& a, const Vector& b) const;  // did the part that breaks a symmetry pass zero between a and b?
   bool past_strong_resonance(In y) const;
+  bool dissolved(In y) const;             // a branch point of r + beta b0 = 0 only
   bool symmetric(const Vector& u) const;  // is that part zero next to the largest on the curve?
   void locate(const Branch& b, int i, const Test& test, double from, double to, DefiningCurve& curve);
 
@@ -169,6 +170,13 @@ double Follower::crossing_real(In y) const {
 bool Follower::past_strong_resonance(In y) const {
   const auto* torus = dynamic_cast<const TorusSystem*>(system_.get());
   return torus && (torus->kappa(y) < 0.0 || torus->kappa(y) > 0.5 * dynamic_cast<const OrbitProblem&>(f_).base_frequency(base(y)));
+}
+
+bool Follower::dissolved(In y) const {
+  if (!dynamic_cast<const BranchPointSystem*>(system_.get())) return false;
+  Matrix j(f_.size(), f_.size() + 2);
+  f_.jacobian(base(y), j);
+  return std::abs(y[f_.size() + 1]) > 1e-8 * (1.0 + j.norm());
 }
 
 bool Follower::mirrored(const Vector& a, const Vector& b) const {
@@ -284,7 +292,10 @@ DefiningCurve Follower::run(double p2, const Observer& observer) {
     if (++fresh % 10 == 0) system_->update_borders(b.u(i));  // keeps the borders near the null vectors as they turn
     const auto* hopf = dynamic_cast<const HopfSystem*>(system_.get());
     if (i > 0 && mirrored(base(b.u(i - 1)), base(b.u(i)))) why = StopReason::symmetric_branch;
-    else if (past_strong_resonance(b.u(i))) why = StopReason::strong_resonance;
+    else if (dissolved(b.u(i))) {
+      throw std::invalid_argument(fmt::format("the branch point dissolves as {} changes: it is a point, no curve",
+                                              f_.parameter_names().size() > 1 ? f_.parameter_names()[1] : "the second parameter"));
+    } else if (past_strong_resonance(b.u(i))) why = StopReason::strong_resonance;
     else if (hopf && hopf->kappa(b.u(i)) < 0.0) why = StopReason::bogdanov_takens;  // beyond: neutral saddles
     else if (observer && !observer(b, i)) why = StopReason::observer;
     return why == StopReason::none;

@@ -301,6 +301,11 @@ void Walker::locate_events() {
 }
 
 void Walker::find_peaks_and_values() {
+  if (!options_.user_values.empty()) find_user_values();
+  for (const auto& peak : options_.peaks) find_peak(peak);
+}
+
+void Walker::find_user_values() {
   State& s = *s_;
   const int n = problem_.size();
   const auto add = [&](EventType type, const std::string& subtype, const Sample& at) {
@@ -316,16 +321,27 @@ void Walker::find_peaks_and_values() {
     p.unstable_before = p.unstable_after = at.signature.total_unstable();
     s.branch.special.push_back(std::move(p));
   };
-  for (double value : options_.user_values) {
-    if ((s.now.u[n] - value) * (s.next.u[n] - value) > 0.0 || s.now.u[n] == value) continue;
-    const double part = (value - s.now.u[n]) / (s.next.u[n] - s.now.u[n]);
-    Vector guess = s.now.u + part * (s.next.u - s.now.u);
-    guess[n] = value;
-    const Vector normal = Vector::Unit(n + 1, n) * (s.next.u[n] > s.now.u[n] ? 1.0 : -1.0);
-    Sample at;
-    if (s.curve.sample(guess, normal, at)) add(EventType::user_value, "", at);
-  }
-  for (const auto& peak : options_.peaks) find_peak(peak);
+  // A fold within the step parts it in two, each of which may meet a value that the ends do not enclose.
+  std::vector<const Vector*> knots = {&s.now.u};
+  for (const auto& e : s.branch.special)
+    if (e.type == EventType::fold && e.arclength > s.arclength && e.arclength < s.arclength + s.step_taken) knots.push_back(&e.u);
+  knots.push_back(&s.next.u);
+  std::vector<Sample> met;
+  for (const double value : options_.user_values)
+    for (std::size_t k = 0; k + 1 < knots.size(); ++k) {
+      const Vector &a = *knots[k], &b = *knots[k + 1];
+      if ((a[n] - value) * (b[n] - value) > 0.0 || a[n] == value) continue;
+      // From a fold the parameter goes with the square of the distance.
+      const bool from_fold = k > 0, to_fold = k + 2 < knots.size();
+      const double linear = (value - a[n]) / (b[n] - a[n]);
+      const double part = from_fold && !to_fold ? std::sqrt(linear) : to_fold && !from_fold ? 1.0 - std::sqrt(1.0 - linear) : linear;
+      Vector guess = a + part * (b - a);
+      guess[n] = value;
+      const Vector normal = Vector::Unit(n + 1, n) * (b[n] > a[n] ? 1.0 : -1.0);
+      Sample at;
+      if (s.curve.sample(guess, normal, at)) met.push_back(std::move(at));
+    }
+  for (const Sample& at : met) add(EventType::user_value, "", at);
 }
 
 // An extremum of the observable within the step: its slope along the tangent changes sign.

@@ -76,6 +76,7 @@ class Walker {
   void keep_scale();
   bool close_loop();
   void find_peaks_and_values();
+  void find_user_values();
   void find_peak(const Observable& peak);
   void lengthen_step();
 

@@ -170,3 +170,25 @@ TEST_CASE("all branches of the square's symmetry leave a double zero") {
     CHECK(all.size() == 1 + axes + diagonals);
   }
 }
+
+TEST_CASE("user values met twice within a step that turns, and what is not followed") {
+  const EquilibriumFlow cusp = System{{"x"}, {"mu + x - x^3"}, {{"mu", -1.0}}}.flow({"mu"});
+  WalkOptions o;
+  o.lower = -1.0;
+  o.upper = 1.0;
+  o.user_values = {0.3849, 0.3};  // the fold is at 0.38490018
+  const std::vector<Branch> all{Walker(cusp, o).walk(Eigen::Vector2d(-1.3, -1.0))};
+  check_values(values(all, EventType::user_value), {0.3, 0.3, 0.3, 0.3849, 0.3849, 0.3849});
+  for (const auto& s : of_type(all, EventType::user_value)) CHECK(std::abs(s.u[1] + s.u[0] - std::pow(s.u[0], 3)) < 1e-11);
+
+  const EquilibriumFlow cascade = System{{"x", "y"}, {"p*x - x^3", "(x^2 - 1/5)*y - y^3"}, {{"p", -1.0}}, {{"x"}, {"y"}}}.flow({"p"});
+  NetworkOptions shallow;
+  shallow.walk.lower = -1.0;
+  shallow.depth = 1;
+  Network net(cascade, shallow);
+  (void)net.add_seed(Eigen::Vector3d(0.0, 0.0, -1.0), "start");
+  net.switch_branches();
+  REQUIRE(net.branches().size() == 2);
+  REQUIRE(net.not_followed().size() == 1);
+  CHECK(net.not_followed()[0] == "B2:BP1");
+}

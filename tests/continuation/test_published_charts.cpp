@@ -233,3 +233,13 @@ TEST_CASE("a closed curve of special points, and ends exactly on the bounds") {
   for (const auto& c : curves)
     for (const Eigen::Index i : {Eigen::Index{0}, c.u.cols() - 1}) CHECK((c.u(2, i) == -0.3 || c.u(2, i) == 0.4));
 }
+
+TEST_CASE("a branch point that dissolves with the second parameter has no curve") {
+  for (const char* rhs : {"p*x - x^2 + q", "p*x - x^3 + q"}) {
+    const System s{{"x"}, {rhs}, {{"p", -1.0}, {"q", 0.0}}};
+    const auto all = branches(s, "p", -1.0, 1.0, {{0.0, -1.0}});
+    const auto points = text_model::of_type(all, EventType::branch_point);
+    REQUIRE(points.size() == 1);
+    CHECK_THROWS_WITH(follow(s.flow({"p", "q"}), points[0], 0.0, ranges(-1.0, 1.0, -1.0, 1.0)), Catch::Contains("dissolves as q changes"));
+  }
+}
