@@ -243,3 +243,31 @@ TEST_CASE("a branch point that dissolves with the second parameter has no curve"
     CHECK_THROWS_WITH(follow(s.flow({"p", "q"}), points[0], 0.0, ranges(-1.0, 1.0, -1.0, 1.0)), Catch::Contains("dissolves as q changes"));
   }
 }
+
+TEST_CASE("Hopf points of the Brusselator on a line, eight cells", "[published]") {
+  // Mode k of the differences grows where (Dx + Dy) s_k / L^2 = B - 1 - A^2, s_k = 4 (N + 1)^2 sin^2(k pi / (2 N + 2)): a closed form in L.
+  constexpr int N = 8;
+  const double A = 2.0, B = 5.4, Dx = 0.008, Dy = 0.004, pi = std::acos(-1.0);
+  System s;
+  s.parameters = {{"A", A}, {"B", B}, {"L", 0.5}, {"cx", Dx * (N + 1) * (N + 1)}, {"cy", Dy * (N + 1) * (N + 1)}};
+  const auto cell = [](const char* name, int i, const char* wall) { return i < 0 || i >= N ? std::string(wall) : name + std::to_string(i); };
+  for (const char* name : {"x", "y"})
+    for (int i = 0; i < N; ++i) {
+      const bool first = name[0] == 'x';
+      const std::string x = cell("x", i, ""), y = cell("y", i, ""), wall = first ? "A" : "B/A", at = cell(name, i, "");
+      const std::string spread = std::string(first ? "cx" : "cy") + "/L^2*(" + cell(name, i - 1, wall.c_str()) + " - 2*" + at + " + " +
+                                 cell(name, i + 1, wall.c_str()) + ")";
+      s.variables.push_back(at);
+      s.rhs.push_back((first ? "A - (B+1)*" + x + " + " : "B*" + x + " - ") + x + "^2*" + y + " + " + spread);
+    }
+  std::vector<double> rest(N, A);
+  rest.insert(rest.end(), N, B / A);
+  rest.push_back(0.5);
+  const auto all = branches(s, "L", 0.4, 1.3, {rest});
+  CHECK(sound(all));
+  std::vector<double> wanted;
+  for (int k = 1; k <= 2; ++k) wanted.push_back(2.0 * (N + 1) * std::sin(k * pi / (2.0 * N + 2.0)) * std::sqrt((Dx + Dy) / (B - 1.0 - A * A)));
+  const auto found = text_model::values(all, EventType::hopf);
+  REQUIRE(found.size() == wanted.size());
+  for (std::size_t i = 0; i < found.size(); ++i) CHECK(std::abs(found[i] - wanted[i]) < 1e-10);
+}
