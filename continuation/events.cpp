@@ -65,12 +65,14 @@ void EventFinder::multiplier_changes(const Signature& a, const Signature& b, std
 
 std::vector<SpecialPoint> EventFinder::find(const Sample& before, const Sample& a, const Sample& b, bool last) {
   found_.clear();
-  if (changed(a.signature, b.signature)) explain(a, b, 0);
-  else if (last) look_closer(before, a, b, 0);
-  else if (turns_at(before, a, b)) {
-    if (!changed(before.signature, a.signature)) look_closer(b, before, a, 0);  // b only tells how much things moved; a change was explained then
-    look_closer(before, a, b, 0);
-  }
+  const bool turned = turns_at(before, a, b), was_changed = changed(before.signature, a.signature), is_changed = changed(a.signature, b.signature);
+  // The neighbours of a step with an event are searched as it is itself: there two more may cancel, and nothing seems to turn.
+  const int beside = std::max(0, options_.suspicion_depth - 4);
+  if (!was_changed && turned) look_closer(b, before, a, 0);  // b only tells how much things moved
+  else if (!was_changed && is_changed) look_closer(before, before, a, beside);
+  if (is_changed) explain(a, b, 1);
+  else if (turned || last) look_closer(before, a, b, 0);
+  else if (was_changed) look_closer(a, a, b, beside);
   std::sort(found_.begin(), found_.end(), [&](const auto& p, const auto& q) { return fraction(curve_, a, b, p.u) < fraction(curve_, a, b, q.u); });
   return found_;
 }
@@ -79,6 +81,8 @@ void EventFinder::explain(const Sample& a, const Sample& b, int depth) {
   const auto kinds = changes(a.signature, b.signature);
   if (kinds.empty()) {
     if (a.signature.unstable != b.signature.unstable) report_unresolved(a, b);
+    // Beside an event two more may cancel: its own step is the last that looks here.
+    else if (curve_.length(b.u - a.u) > 1e-5) look_closer(a, a, b, std::max(0, options_.suspicion_depth - 4));
     return;
   }
   for (const auto& kind : kinds) {
@@ -154,7 +158,7 @@ void EventFinder::look_closer(const Sample& before, const Sample& a, const Sampl
     explain(a, middle, depth + 1);
     explain(middle, b, depth + 1);
   } else if (depth + 1 < options_.suspicion_depth) {
-    look_closer(before, a, middle, depth + 1);
+    look_closer(&before == &a ? b : before, a, middle, depth + 1);  // without a point before a the one behind tells how much things move
     look_closer(a, middle, b, depth + 1);
   } else {
     look_at_extrema(a, middle, b, depth + 1);

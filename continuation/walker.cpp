@@ -290,14 +290,24 @@ void Walker::locate_events() {
   // At either end of the walk there is no point beyond that would show a turn.
   const int first = s.branch.start_reason == StopReason::known_branch_point ? 1 : 0;
   const bool last = s.stop != StopReason::none || s.accepted == first;
-  if (last || !(s.now.signature == s.next.signature) || s.finder.turns_at(s.before, s.now, s.next))
+  if (last || !(s.now.signature == s.next.signature) || !(s.before.signature == s.now.signature) || s.finder.turns_at(s.before, s.now, s.next))
     for (auto& e : s.finder.find(s.before, s.now, s.next, last)) {
+      if (is_known(e)) continue;
       const Vector from_now = e.u - s.now.u;
       const bool behind = s.curve.dot(from_now, s.next.u - s.now.u) < 0.0;
       e.arclength = s.arclength + (behind ? -1.0 : 1.0) * s.curve.length(from_now);
       s.branch.special.push_back(std::move(e));
     }
   find_peaks_and_values();
+}
+
+// A step may be searched twice, as the one behind and as the one ahead of a turn.
+bool Walker::is_known(const SpecialPoint& e) const {
+  const auto& known = s_->branch.special;
+  return std::any_of(known.rbegin(), known.rend(), [&](const SpecialPoint& k) {
+    return k.type == e.type && k.block == e.block && std::abs(k.frequency - e.frequency) <= 1e-6 * k.frequency &&
+           std::abs(k.arclength - s_->arclength) < 3.0 * options_.max_step && s_->curve.length(k.u - e.u) < 1e-9;
+  });
 }
 
 void Walker::find_peaks_and_values() {

@@ -75,6 +75,7 @@ class Walker {
   bool within_bounds(int& index, double& bound) const;
   void keep_scale();
   bool close_loop();
+  bool is_known(const SpecialPoint& e) const;
   void find_peaks_and_values();
   void find_user_values();
   void find_peak(const Observable& peak);
