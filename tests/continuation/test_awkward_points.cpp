@@ -192,3 +192,52 @@ TEST_CASE("user values met twice within a step that turns, and what is not follo
   REQUIRE(net.not_followed().size() == 1);
   CHECK(net.not_followed()[0] == "B2:BP1");
 }
+
+TEST_CASE("folds and Hopf points that cancel in pairs beside other events") {
+  struct Case {
+    std::vector<double> folds, hopfs;  // of s: p = g(s) with g' zero at the folds, the pair's real part zero at the hopfs
+  };
+  const std::vector<Case> cases = {{{0.1006365, 0.11481776}, {0.15141032}},
+                                   {{-0.47927156, -0.47132054, -0.42334402}, {-0.14107171}},
+                                   {{-0.17090705, -0.06622396, -0.02556636, 0.00417741}, {}},
+                                   {{-0.2198509, 0.25052297}, {-0.20888716, -0.19966873}},
+                                   {{-0.83590999, -0.83590715, 0.24462673}, {-0.81582207, -0.81317803, 0.26350438}}};
+  for (const auto& c : cases) {
+    const auto product = [](const std::vector<double>& roots) {
+      std::string text = "1";
+      for (const double root : roots) text += "*(s - (" + std::to_string(root) + "))";
+      return text;
+    };
+    std::vector<double> g = {1.0};  // coefficients of g'
+    for (const double root : c.folds) {
+      const double exact = std::stod(std::to_string(root));
+      std::vector<double> next(g.size() + 1, 0.0);
+      for (std::size_t k = 0; k < g.size(); ++k) {
+        next[k] -= exact * g[k];
+        next[k + 1] += g[k];
+      }
+      g = next;
+    }
+    System s{{"s", "x", "y"}, {"p", product(c.hopfs) + "*x - y - x*(x^2+y^2)", "x + (" + product(c.hopfs) + ")*y - y*(x^2+y^2)"}, {{"p", 0.0}}};
+    double low = 0.0, high = 0.0;
+    const auto value = [&g](double at) {
+      double sum = 0.0;
+      for (std::size_t k = 0; k < g.size(); ++k) sum += g[k] / (static_cast<double>(k) + 1.0) * std::pow(at, static_cast<double>(k) + 1.0);
+      return sum;
+    };
+    for (std::size_t k = 0; k < g.size(); ++k) {
+      const std::string name = "g" + std::to_string(k);
+      s.parameters[name] = g[k] / (static_cast<double>(k) + 1.0);
+      s.rhs[0] += " - " + name + "*s^" + std::to_string(k + 1);
+    }
+    for (double at = -1.2; at <= 1.2; at += 0.01) {
+      low = std::min(low, value(at));
+      high = std::max(high, value(at));
+    }
+    const auto all = branches(s, "p", low, high, {{-1.2, 0.0, 0.0, value(-1.2)}});
+    CAPTURE(c.folds, c.hopfs);
+    CHECK(of_type(all, EventType::unresolved).empty());
+    CHECK(of_type(all, EventType::fold).size() == c.folds.size());
+    CHECK(of_type(all, EventType::hopf).size() == c.hopfs.size());
+  }
+}
