@@ -100,6 +100,7 @@ class Branch {
   std::string name;
   std::string born_at;                  ///< "start", "seed", or the label of the branch point it leaves from
   bool isola = false;                   ///< closed, found from a seed, no branch point shared with a branch known before
+  bool mirror_image = false;            ///< some reflection of the problem moves the branch: its image is a branch too, not followed
   std::vector<int> active_reflections;  ///< reflections of the problem that leave every point of this branch in place
 
  private:

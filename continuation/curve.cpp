@@ -164,13 +164,16 @@ bool Curve::refine_tangent() {
   return tangent_.allFinite();
 }
 
-bool Curve::complete(In u, Out tangent, Signature& signature) {
-  const int n = f_.size();
+bool Curve::tangent(Out tangent) {
   if (!refine_tangent()) return false;
   const double size = length_of(tangent_);
   if (!std::isfinite(size) || size == 0.0) return false;
   spread(tangent_, 1.0 / size, tangent);
-  signature.forward = tangent[n] > 0.0;
+  return true;
+}
+
+bool Curve::classify(In u, In tangent, Signature& signature) {
+  signature.forward = tangent[f_.size()] > 0.0;
   if (!f_.is_flow()) {
     block_determinants(signature, signature.forward);
     return !orbit_ || count_multipliers(u, signature);

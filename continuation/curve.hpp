@@ -83,12 +83,15 @@ class Curve {
 
   /// Newton onto the curve within the plane through `anchor` normal to `normal`. On success Jacobian and factors are kept for `complete`.
   Report correct(Out u, In normal, In anchor);
-  /// Tangent (positive along the normal of `correct`), spectrum and signature at the point just corrected. False if singular or non-finite.
-  bool complete(In u, Out tangent, Signature& signature);
+  /// Tangent at the point just corrected, positive along the normal of `correct`. False if singular or non-finite.
+  bool tangent(Out tangent);
+  /// Spectrum and signature there; false if they cannot be computed.
+  bool classify(In u, In tangent, Signature& signature);
+  bool complete(In u, Out t, Signature& signature) { return tangent(t) && classify(u, t, signature); }
 
-  /// Eigenvalues of r_x or Floquet multipliers at the point last completed; empty if the problem has neither.
+  /// Eigenvalues of r_x or Floquet multipliers at the point last classified; empty if the problem has neither.
   const Eigen::VectorXcd& eigenvalues() const { return eigenvalues_; }
-  const std::array<double, Signature::max_blocks>& leads_now() const { return lead_; }  ///< test functions at the point last completed
+  const std::array<double, Signature::max_blocks>& leads_now() const { return lead_; }  ///< test functions at the point last classified
   static int spectrum_size(const Problem& f);
   /// The problem as one of periodic motions; null if it is none.
   const OrbitProblem* orbit() const { return orbit_; }

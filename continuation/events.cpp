@@ -1,5 +1,7 @@
 #include "continuation/events.hpp"
 
+#include <Eigen/Eigenvalues>
+#include <Eigen/SVD>
 #include <algorithm>
 #include <memory>
 
@@ -63,12 +65,14 @@ void EventFinder::multiplier_changes(const Signature& a, const Signature& b, std
 
 std::vector<SpecialPoint> EventFinder::find(const Sample& before, const Sample& a, const Sample& b, bool last) {
   found_.clear();
-  if (changed(a.signature, b.signature)) explain(a, b, 0);
-  else if (last) look_closer(before, a, b, 0);
-  else if (turns_at(before, a, b)) {
-    if (!changed(before.signature, a.signature)) look_closer(b, before, a, 0);  // b only tells how much things moved; a change was explained then
-    look_closer(before, a, b, 0);
-  }
+  const bool turned = turns_at(before, a, b), was_changed = changed(before.signature, a.signature), is_changed = changed(a.signature, b.signature);
+  // The neighbours of a step with an event are searched as it is itself: there two more may cancel, and nothing seems to turn.
+  const int beside = std::max(0, options_.suspicion_depth - 4);
+  if (!was_changed && turned) look_closer(b, before, a, 0);  // b only tells how much things moved
+  else if (!was_changed && is_changed) look_closer(before, before, a, beside);
+  if (is_changed) explain(a, b, 1);
+  else if (turned || last) look_closer(before, a, b, 0);
+  else if (was_changed) look_closer(a, a, b, beside);
   std::sort(found_.begin(), found_.end(), [&](const auto& p, const auto& q) { return fraction(curve_, a, b, p.u) < fraction(curve_, a, b, q.u); });
   return found_;
 }
@@ -77,6 +81,8 @@ void EventFinder::explain(const Sample& a, const Sample& b, int depth) {
   const auto kinds = changes(a.signature, b.signature);
   if (kinds.empty()) {
     if (a.signature.unstable != b.signature.unstable) report_unresolved(a, b);
+    // Beside an event two more may cancel: its own step is the last that looks here.
+    else if (curve_.length(b.u - a.u) > 1e-5) look_closer(a, a, b, std::max(0, options_.suspicion_depth - 4));
     return;
   }
   for (const auto& kind : kinds) {
@@ -89,7 +95,27 @@ void EventFinder::explain(const Sample& a, const Sample& b, int depth) {
     explain(middle, b, depth + 1);
     return;
   }
-  report_unresolved(a, b);
+  if (!locate_multiple(a, b)) report_unresolved(a, b);
+}
+
+// An even number of real eigenvalues through zero at one point: no determinant changes sign, but the bracket has shrunk on it.
+bool EventFinder::locate_multiple(const Sample& a, const Sample& b) {
+  const Problem& f = curve_.problem();
+  if (curve_.orbit() || f.derivatives() < 2) return false;
+  SpecialPoint p;
+  p.type = EventType::branch_point;
+  p.subtype = "multiple";
+  const double from = a.lead[0], to = b.lead[0], part = from * to < 0.0 ? from / (from - to) : 0.5;
+  p.u = a.u + part * (b.u - a.u);
+  p.tangent = a.tangent;
+  p.residual = std::max(a.residual, b.residual);
+  if (departures(f, p).size() < 2) return false;
+  p.bracket[0] = std::min(a.u[f.size()], b.u[f.size()]);
+  p.bracket[1] = std::max(a.u[f.size()], b.u[f.size()]);
+  p.unstable_before = a.signature.total_unstable();
+  p.unstable_after = b.signature.total_unstable();
+  found_.push_back(p);
+  return true;
 }
 
 void EventFinder::report_unresolved(const Sample& a, const Sample& b) {
@@ -132,7 +158,7 @@ void EventFinder::look_closer(const Sample& before, const Sample& a, const Sampl
     explain(a, middle, depth + 1);
     explain(middle, b, depth + 1);
   } else if (depth + 1 < options_.suspicion_depth) {
-    look_closer(before, a, middle, depth + 1);
+    look_closer(&before == &a ? b : before, a, middle, depth + 1);  // without a point before a the one behind tells how much things move
     look_closer(a, middle, b, depth + 1);
   } else {
     look_at_extrema(a, middle, b, depth + 1);
@@ -194,8 +220,11 @@ bool EventFinder::locate(const Kind& kind, const Sample& a, const Sample& b, Spe
     double part = f * g < 0.0 ? f / (f - g) : 0.5;
     if (i % 3 == 2) part = 0.5;
     part = std::clamp(part, 0.05, 0.95);
-    const double sigma = from + part * (to - from);
-    if (!curve_.between(a, b, sigma, middle)) return false;
+    double sigma = from + part * (to - from);
+    if (!curve_.between(a, b, sigma, middle)) {  // a secant may hit a branch point to the last digit, where no tangent is
+      sigma = from + (part < 0.5 ? 1.1 : 0.9) * (sigma - from);
+      if (!curve_.between(a, b, sigma, middle)) return false;
+    }
     if (has_system && (i < 3 || i % 6 == 0) && solve(kind, middle, out) && inside(out)) return true;
     if (has(lo.signature, middle.signature)) {
       hi = middle;
@@ -219,7 +248,7 @@ bool EventFinder::locate(const Kind& kind, const Sample& a, const Sample& b, Spe
   return true;
 }
 
-bool EventFinder::solve(const Kind& kind, const Sample& near, SpecialPoint& out) {
+bool EventFinder::solve(const Kind& kind, const Sample& near, SpecialPoint& out, double frequency) {
   const Problem& f = curve_.problem();
   if (f.derivatives() < 2) return false;
   if (kind.type == EventType::period_doubling) return solve_period_doubling(kind.block, near, out);
@@ -237,7 +266,8 @@ bool EventFinder::solve(const Kind& kind, const Sample& near, SpecialPoint& out)
       else return false;
       break;
     case EventType::hopf:
-      system = std::make_unique<HopfSystem>(f, state, block, near.u, near.kappa[static_cast<std::size_t>(kind.block)]);
+      system = std::make_unique<HopfSystem>(f, state, block, near.u,
+                                            frequency > 0.0 ? frequency * frequency : near.kappa[static_cast<std::size_t>(kind.block)]);
       break;
     case EventType::torus:
       system = torus_system(kind.block, near);
@@ -312,7 +342,6 @@ bool EventFinder::accept(const Kind& kind, const Sample& a, const Sample& b, Spe
     const int pairs_right = unstable_pairs(curve_.eigenvalues());
     const auto shown = changes(left.signature, right.signature);
     const auto same = [&](const Kind& k) { return k.type == kind.type && k.block == kind.block; };
-    const auto is_hopf = [](const Kind& k) { return k.type == EventType::hopf; };
     if (std::none_of(shown.begin(), shown.end(), same)) continue;
     point.unstable_before = left.signature.total_unstable();
     point.unstable_after = right.signature.total_unstable();
@@ -326,28 +355,97 @@ bool EventFinder::accept(const Kind& kind, const Sample& a, const Sample& b, Spe
       point.tangent = left.tangent;
     }
     found_.push_back(point);
-    for (const auto& other : shown) {  // coincident with another kind: each has its own regular system
-      SpecialPoint second;
-      if (same(other)) continue;
-      if (solve(other, left, second) && curve_.length(second.u - point.u) < 2.0 * delta) {
-        copy_sides(point, second);
-        found_.push_back(second);
-      } else {
-        report_unresolved(left, right);
-      }
-    }
-    // A real eigenvalue through zero changes the count by one and so hides a pair that crosses within the same delta.
-    SpecialPoint pair;
-    if (!curve_.orbit() && kind.type != EventType::hopf && pairs_left != pairs_right && std::none_of(shown.begin(), shown.end(), is_hopf) &&
-        solve({EventType::hopf, kind.block}, left, pair) && curve_.length(pair.u - point.u) < 2.0 * delta) {
-      copy_sides(point, pair);
-      found_.push_back(pair);
-    }
+    find_coincident(kind, point, left, right, delta, pairs_left, pairs_right);
     explain(a, left, depth + 1);
     explain(right, b, depth + 1);
     return true;
   }
   return false;
+}
+
+// Other kinds at the same place: each has its own regular system.
+void EventFinder::find_coincident(const Kind& kind, const SpecialPoint& point, const Sample& left, const Sample& right, double delta, int pairs_left,
+                                  int pairs_right) {
+  const auto shown = changes(left.signature, right.signature);
+  const auto is = [](const Kind& k, EventType type) { return k.type == type; };
+  const bool upright = turns_at_branch_point(shown, point);
+  if (upright && is(kind, EventType::fold)) found_.pop_back();  // only the branch point itself is told
+  for (const auto& other : shown) {
+    SpecialPoint second;
+    if ((other.type == kind.type && other.block == kind.block) || (upright && is(other, EventType::fold))) continue;
+    if (solve(other, left, second) && curve_.length(second.u - point.u) < 2.0 * delta) {
+      copy_sides(point, second);
+      found_.push_back(second);
+    } else {
+      report_unresolved(left, right);
+    }
+  }
+  if (curve_.orbit()) return;
+  // A real eigenvalue through zero changes the count by one and so hides a pair that crosses within the same delta.
+  SpecialPoint pair;
+  if (!is(kind, EventType::hopf) && pairs_left != pairs_right &&
+      std::none_of(shown.begin(), shown.end(), [&](const Kind& k) { return is(k, EventType::hopf); }) &&
+      solve({EventType::hopf, kind.block}, left, pair) && curve_.length(pair.u - point.u) < 2.0 * delta) {
+    copy_sides(point, pair);
+    found_.push_back(pair);
+  }
+  if (is(kind, EventType::hopf)) find_further_pairs(kind, point, left, right, delta);
+}
+
+// A branch that leaves a pitchfork upright turns there: the parameter has an extremum, but r_p lies in the range of r_x. That is no fold.
+bool EventFinder::turns_at_branch_point(const std::vector<Kind>& shown, const SpecialPoint& point) const {
+  const auto has = [&](EventType type) {
+    return std::any_of(shown.begin(), shown.end(), [type](const Kind& k) { return k.type == type && k.block == 0; });
+  };
+  if (!has(EventType::fold) || !has(EventType::branch_point)) return false;
+  const Problem& f = curve_.problem();
+  Matrix j(f.size(), f.size() + f.parameters());
+  f.jacobian(point.u, j);
+  // Is r_p in the range of r_x, hence orthogonal to all its left null vectors?
+  const Indices& state = curve_.blocks().indices[0];
+  const Matrix a = j(state, state);
+  const Vector rp = j(state, f.size());
+  const Eigen::JacobiSVD<Matrix> svd(a, Eigen::ComputeFullU);
+  const double small = 1e-6 * j.norm();
+  for (Eigen::Index k = 0; k < a.rows(); ++k)
+    if (svd.singularValues()[k] <= small && std::abs(svd.matrixU().col(k).dot(rp)) > small) return false;
+  return true;
+}
+
+// More than one pair crossed within delta: each has its own frequency. Pairs that share even that are told as unresolved.
+void EventFinder::find_further_pairs(const Kind& kind, const SpecialPoint& point, const Sample& left, const Sample& right, double delta) {
+  const auto slot = static_cast<std::size_t>(kind.block);
+  const bool turned = left.signature.negative[slot] != right.signature.negative[slot];
+  int missing = (std::abs(right.signature.unstable[slot] - left.signature.unstable[slot]) - (turned ? 1 : 0)) / 2 - 1;
+  if (missing <= 0) return;
+  Matrix j(curve_.problem().size(), curve_.problem().size() + curve_.problem().parameters());
+  curve_.problem().jacobian(point.u, j);
+  const Indices& block = curve_.blocks().indices[slot];
+  Eigen::VectorXcd z = Eigen::EigenSolver<Matrix>(Matrix(j(block, block)), false).eigenvalues();
+  std::sort(z.begin(), z.end(), [](const auto& p, const auto& q) { return std::abs(p.real()) < std::abs(q.real()); });
+  for (const auto& value : z) {
+    SpecialPoint pair;
+    if (missing == 0 || !(value.imag() > 0.0)) continue;
+    if (!solve(kind, left, pair, value.imag()) || curve_.length(pair.u - point.u) >= 2.0 * delta) continue;
+    const bool known = std::any_of(found_.begin(), found_.end(), [&](const SpecialPoint& p) {
+      return p.type == pair.type && p.block == pair.block && std::abs(p.frequency - pair.frequency) < 1e-6 * p.frequency &&
+             curve_.length(p.u - pair.u) < 2.0 * delta;
+    });
+    if (known) continue;
+    copy_sides(point, pair);
+    found_.push_back(pair);
+    --missing;
+  }
+  if (missing > 0) report_unresolved(left, right);
+}
+
+bool EventFinder::branch_point_at(const Sample& near, SpecialPoint& out) {
+  if (curve_.orbit() || !solve({EventType::branch_point, 0}, near, out) || curve_.length(out.u - near.u) > 1e-6) return false;
+  const double p = out.u[out.u.size() - 1], q = near.u[near.u.size() - 1];
+  out.bracket[0] = std::min(p, q);
+  out.bracket[1] = std::max(p, q);
+  out.unstable_before = out.unstable_after = near.signature.total_unstable();
+  return true;
 }
 
 bool EventFinder::mirror_crossing(const Sample& a, const Sample& b, int r, SpecialPoint& out) {

@@ -32,6 +32,9 @@ class EventFinder {
   std::vector<SpecialPoint> find(const Sample& before, const Sample& a, const Sample& b, bool last = false);
   bool turns_at(const Sample& before, const Sample& a, const Sample& b) const;
 
+  /// A branch point next to `near`, where a walk can go no further because its range ends on it.
+  bool branch_point_at(const Sample& near, SpecialPoint& out);
+
   /// The branch point on the symmetric branch that lies between a and b if reflection `r` of the problem changes the sign of a state's odd part.
   bool mirror_crossing(const Sample& a, const Sample& b, int r, SpecialPoint& out);
 
@@ -48,8 +51,13 @@ class EventFinder {
   void look_closer(const Sample& before, const Sample& a, const Sample& b, int depth);
   void look_at_extrema(const Sample& a, const Sample& middle, const Sample& b, int depth);
   bool locate(const Kind& kind, const Sample& a, const Sample& b, SpecialPoint& out);
-  bool solve(const Kind& kind, const Sample& near, SpecialPoint& out);
+  bool solve(const Kind& kind, const Sample& near, SpecialPoint& out, double frequency = 0.0);  // frequency: of the pair meant, 0: the nearest
   bool accept(const Kind& kind, const Sample& a, const Sample& b, SpecialPoint& found, int depth);
+  void find_coincident(const Kind& kind, const SpecialPoint& point, const Sample& left, const Sample& right, double delta, int pairs_left,
+                       int pairs_right);
+  bool turns_at_branch_point(const std::vector<Kind>& shown, const SpecialPoint& point) const;
+  void find_further_pairs(const Kind& kind, const SpecialPoint& point, const Sample& left, const Sample& right, double delta);
+  bool locate_multiple(const Sample& a, const Sample& b);
   void report_unresolved(const Sample& a, const Sample& b);
   bool solve_period_doubling(int group, const Sample& near, SpecialPoint& out);
   std::unique_ptr<AugmentedSystem> torus_system(int group, const Sample& near) const;

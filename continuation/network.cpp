@@ -2,10 +2,12 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/LU>
 #include <algorithm>
 #include <map>
 
 #include "continuation/normal_form.hpp"
+#include "continuation/null_vectors.hpp"
 #include "continuation/switching.hpp"
 #include "core/newton.hpp"
 
@@ -78,10 +80,67 @@ int Network::unstable_at(int branch, In u) const {
   return spectrum.compute(j) ? spectrum.unstable() : -1;
 }
 
+// A solution where r_x is singular has a fold or branch point on it, where a walk cannot begin: it begins beside it, at another value of the
+// parameter or, at a fold, along the null vector.
+Vector Network::regular_start(const Vector& u0) const {
+  const int n = problem_.size();
+  const NewtonOptions exact{.tolerance = 1e-12, .max_iterations = 30};
+  Matrix j(n, n + 1);
+  const NewtonResult polished = newton(problem_, u0, exact);
+  const Vector at = polished.ok() ? polished.x : u0;
+  double usual = 0.0;  // size of r_x around
+  for (const double part : {-1e-2, 1e-2}) {
+    Vector beside = at;
+    beside[n] += part * (options_.walk.upper - options_.walk.lower);
+    problem_.jacobian(beside, j);
+    if (j.allFinite()) usual = std::max(usual, j.leftCols(n).norm());
+  }
+  const auto condition = [&](const Vector& u) {
+    problem_.jacobian(u, j);
+    const double reciprocal = j.leftCols(n).partialPivLu().rcond();
+    if (!std::isfinite(reciprocal)) return 0.0;  // an exact zero among the pivots
+    return usual > 0.0 ? reciprocal * std::min(1.0, j.leftCols(n).norm() / usual) : reciprocal;
+  };
+  const double reciprocal_at = condition(at);
+  if (reciprocal_at > 1e-5) return u0;
+  const auto better = [&](const Vector& u) { return condition(u) > 30.0 * reciprocal_at; };
+  for (const double part : {1e-4, -1e-4, 1e-3, -1e-3, 1e-2, -1e-2}) {
+    Vector beside = at;
+    beside[n] += part * (options_.walk.upper - options_.walk.lower);
+    if (beside[n] < options_.walk.lower || beside[n] > options_.walk.upper) continue;
+    const NewtonResult there = newton(problem_, beside, exact);
+    if (there.ok() && better(there.x)) return there.x;
+  }
+  problem_.jacobian(at, j);
+  Vector v, w, normal = Vector::Zero(n + 1);
+  null_vectors(j.leftCols(n), v, w);
+  normal.head(n) = v;
+  Curve curve(problem_, make_blocks(problem_, {}), options_.walk.corrector);
+  for (const double part : {1e-3, -1e-3, 1e-2, -1e-2}) {
+    Sample there;
+    const Vector beside = at + part * (1.0 + at.head(n).norm()) * normal;
+    if (!curve.sample(beside, normal, there) || there.u[n] < options_.walk.lower || there.u[n] > options_.walk.upper) continue;
+    if (better(there.u)) return there.u;
+  }
+  return u0;
+}
+
+// Both of two points inside lie on branches known before.
+bool Network::repeats(const Branch& branch) const {
+  const int last = branch.points() - 1;
+  return last >= 4 && contains(branch.u(last / 3)) && contains(branch.u(2 * last / 3));
+}
+
 bool Network::add_seed(const Vector& u0, const std::string& origin) {
   if (stopped_ || static_cast<int>(branches_.size()) >= options_.max_branches || contains(u0)) return false;
+  Vector start = regular_start(u0);
+  for (int r = 0; r < static_cast<int>(problem_.reflections().size()); ++r) {  // symmetric up to rounding is symmetric
+    const Indices odd = odd_coordinates(problem_, r);
+    if (start(odd).lpNorm<Eigen::Infinity>() < 1e-11 * (1.0 + start.head(problem_.size()).norm())) start(odd).setZero();
+  }
+  if (contains(start)) return false;
   Walker walker(problem_, options_.walk);
-  Branch branch = walker.walk(u0, observer_);
+  Branch branch = walker.walk(start, observer_);
   branch.born_at = origin;
   adopt(std::move(branch), 0);
   return true;
@@ -96,12 +155,16 @@ void Network::adopt(Branch branch, int generation) {
   branch.name = fmt::format("{}{}", prefix, number);
   for (auto& s : branch.special) set_normal_form(problem_, s);
   const int index = static_cast<int>(branches_.size());
+  branch.mirror_image = branch.active_reflections.size() < problem_.reflections().size();
   branch.isola = generation == 0 && branch.stop_reason == StopReason::closed_loop;
   int count = 0;
   for (auto& s : branch.special) {
     if (s.type != EventType::branch_point) continue;
     ++count;
-    const auto known = std::find_if(junctions_.begin(), junctions_.end(), [&](const Junction& j) { return same_up_to_mirror(j.point.u, s.u); });
+    // Two symmetries may break at one point of a branch: two junctions.
+    const auto known = std::find_if(junctions_.begin(), junctions_.end(), [&](const Junction& j) {
+      return same_up_to_mirror(j.point.u, s.u) && (j.branch != index || j.point.block == s.block);
+    });
     if (known != junctions_.end()) {
       branch.isola = false;
       known->done = true;  // this branch ends at a point where another would have been switched to it
@@ -117,6 +180,13 @@ void Network::adopt(Branch branch, int generation) {
 void Network::add_branch_point(const SpecialPoint& point, const std::string& origin) {
   const bool known = std::any_of(junctions_.begin(), junctions_.end(), [&](const Junction& j) { return same_up_to_mirror(j.point.u, point.u); });
   if (!known) junctions_.push_back({point, -1, origin, 0, false});
+}
+
+std::vector<std::string> Network::not_followed() const {
+  std::vector<std::string> all;
+  for (const auto& j : junctions_)
+    if (!j.done) all.push_back(j.origin);
+  return all;
 }
 
 void Network::switch_branches() {
@@ -135,6 +205,7 @@ void Network::switch_branches() {
       Branch branch = walker.walk_from(point.u, d.direction, true, observer_);
       if (d.both_senses && branch.stop_reason != StopReason::closed_loop)
         branch = Branch::joined(walker.walk_from(point.u, -d.direction, true, observer_), branch);
+      if (repeats(branch)) continue;
       branch.born_at = origin;
       adopt(std::move(branch), generation);
     }

@@ -39,6 +39,8 @@ class Network {
   void switch_branches();
 
   const std::vector<Branch>& branches() const { return branches_; }
+  /// Branch points, "B3:BP1", that lie too deep or beyond max_branches and that no branch found leaves.
+  std::vector<std::string> not_followed() const;
   bool stopped() const { return stopped_; }
   /// Branch and solution at parameter value p nearest to u, if u (or a mirror image) is a solution known there.
   bool contains(In u) const;
@@ -56,6 +58,8 @@ class Network {
     bool done = false;  // some branch already leaves or arrives here
   };
   void adopt(Branch branch, int generation);
+  Vector regular_start(const Vector& u0) const;
+  bool repeats(const Branch& branch) const;
   bool same_up_to_mirror(In a, In b) const;
 
   const Problem& problem_;

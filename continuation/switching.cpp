@@ -1,11 +1,81 @@
 #include "continuation/switching.hpp"
 
+#include <Eigen/LU>
 #include <Eigen/SVD>
+#include <algorithm>
 
 namespace whirl::continuation {
+namespace {
+
+constexpr int largest_searched = 64;  // unknowns; the search costs some hundred factorisations
+
+// Newton on r(u) = 0, |u - u0| = radius, from a point of that sphere.
+bool solve_on_sphere(const Problem& f, const Vector& u0, double radius, Vector& u) {
+  const int n = f.size();
+  Matrix full(n + 1, n + 1), j(n, n + 1);
+  Vector r(n), rhs(n + 1);
+  for (int i = 0; i < 80; ++i) {
+    f.linearise(u, r, j);
+    const Vector from = u - u0;
+    rhs << -r, 0.5 * (radius * radius - from.squaredNorm()) / radius;
+    full << j, from.transpose() / radius;
+    Vector step = full.fullPivLu().solve(rhs);
+    if (!step.allFinite()) return false;
+    if (step.norm() > 0.5 * radius) step *= 0.5 * radius / step.norm();
+    u += step;
+    if (step.norm() < 1e-10 * radius) return true;
+  }
+  return false;
+}
+
+// Where two or more eigenvalues are zero at once no quadratic form tells the directions: what meets a small sphere about the point does. The starts
+// fill the kernel: every sign pattern of its basis.
+std::vector<Departure> search_sphere(const Problem& f, const SpecialPoint& point, const Matrix& kernel) {
+  const double radius = 1e-3 * (1.0 + point.u.norm());
+  const auto d = kernel.cols();
+  const Vector along = point.tangent.normalized();
+  std::vector<Vector> met;
+  int patterns = 1;
+  for (Eigen::Index k = 0; k < d; ++k) patterns *= 5;
+  for (int pattern = 0; pattern < patterns; ++pattern) {
+    Vector c(d);
+    for (Eigen::Index k = 0, rest = pattern; k < d; ++k, rest /= 5) c[k] = static_cast<double>(rest % 5) - 2.0;
+    if (c.norm() == 0.0) continue;
+    Vector u = point.u + kernel * c * (radius / c.norm());
+    if (!solve_on_sphere(f, point.u, radius, u)) continue;
+    const Vector direction = (u - point.u).normalized();
+    if (std::abs(direction.dot(along)) > 0.999) continue;
+    if (std::any_of(met.begin(), met.end(), [&](const Vector& m) { return (m - direction).norm() < 1e-2; })) continue;
+    met.push_back(direction);
+  }
+  std::vector<Departure> all;
+  for (const Vector& direction : met) all.push_back({direction, false});
+  return all;
+}
+
+// Basis of the kernel of [r_x r_p] if it has more than two dimensions, else empty.
+Matrix multiple_kernel(const Problem& f, In u) {
+  const int n = f.size();
+  if (!f.is_flow() || n < 2 || n > largest_searched) return {};
+  Matrix j(n, n + 1), around(n, n + 1);
+  f.jacobian(u, j);
+  double usual = j.norm();
+  for (int i = 0; i <= n; ++i) {  // at the point itself all of it may vanish
+    Vector beside = u;
+    beside[i] += 0.1 * (1.0 + std::abs(u[i]));
+    f.jacobian(beside, around);
+    if (around.allFinite()) usual = std::max(usual, around.norm());
+  }
+  const Eigen::JacobiSVD<Matrix> svd(j, Eigen::ComputeFullV);
+  const auto rank = (svd.singularValues().array() > 1e-6 * usual).count();
+  return n + 1 - rank > 2 ? Matrix(svd.matrixV().rightCols(n + 1 - rank)) : Matrix();
+}
+
+}  // namespace
 
 std::vector<Departure> departures(const Problem& f, SpecialPoint& point) {
   const int n = f.size();
+  if (const Matrix kernel = multiple_kernel(f, point.u); kernel.size() > 0) return search_sphere(f, point, kernel);
   if (point.block > 0) {  // a reflection breaks: along the odd null vector, its mirror image the other way
     Vector direction = Vector::Zero(n + 1);
     direction.head(n) = point.null_vector;

@@ -106,7 +106,8 @@ class Follower {
   double crossing_real(In y) const;
   bool mirrored(const Vector& a, const Vector& b) const;  // did the part that breaks a symmetry pass zero between a and b?
   bool past_strong_resonance(In y) const;
-  bool symmetric(const Vector& u) const;  // is that part zero next to the rest?
+  bool dissolved(In y) const;             // a branch point of r + beta b0 = 0 only
+  bool symmetric(const Vector& u) const;  // is that part zero next to the largest on the curve?
   void locate(const Branch& b, int i, const Test& test, double from, double to, DefiningCurve& curve);
 
   const Problem& f_;
@@ -116,6 +117,7 @@ class Follower {
   mutable Vector sense_;
   Blocks blocks_;
   std::unique_ptr<AugmentedSystem> system_;
+  std::vector<double> largest_odd_;  // on the curve, for each reflection
 };
 
 SpecialPoint Follower::at(In y) const {
@@ -170,6 +172,13 @@ bool Follower::past_strong_resonance(In y) const {
   return torus && (torus->kappa(y) < 0.0 || torus->kappa(y) > 0.5 * dynamic_cast<const OrbitProblem&>(f_).base_frequency(base(y)));
 }
 
+bool Follower::dissolved(In y) const {
+  if (!dynamic_cast<const BranchPointSystem*>(system_.get())) return false;
+  Matrix j(f_.size(), f_.size() + 2);
+  f_.jacobian(base(y), j);
+  return std::abs(y[f_.size() + 1]) > 1e-8 * (1.0 + j.norm());
+}
+
 bool Follower::mirrored(const Vector& a, const Vector& b) const {
   for (int r = 0; r < static_cast<int>(f_.reflections().size()); ++r) {
     if (std::find(blocks_.active.begin(), blocks_.active.end(), r) != blocks_.active.end()) continue;
@@ -185,7 +194,7 @@ bool Follower::symmetric(const Vector& u) const {
     if (std::find(blocks_.active.begin(), blocks_.active.end(), r) != blocks_.active.end()) continue;
     double odd = 0.0;
     for (int i : odd_coordinates(f_, r)) odd = std::max(odd, std::abs(u[i]));
-    if (odd < 1e-2 * u.head(f_.size()).norm()) return true;
+    if (odd < 1e-2 * largest_odd_[static_cast<std::size_t>(r)]) return true;
   }
   return false;
 }
@@ -283,15 +292,23 @@ DefiningCurve Follower::run(double p2, const Observer& observer) {
     if (++fresh % 10 == 0) system_->update_borders(b.u(i));  // keeps the borders near the null vectors as they turn
     const auto* hopf = dynamic_cast<const HopfSystem*>(system_.get());
     if (i > 0 && mirrored(base(b.u(i - 1)), base(b.u(i)))) why = StopReason::symmetric_branch;
-    else if (past_strong_resonance(b.u(i))) why = StopReason::strong_resonance;
+    else if (dissolved(b.u(i))) {
+      throw std::invalid_argument(fmt::format("the branch point dissolves as {} changes: it is a point, no curve",
+                                              f_.parameter_names().size() > 1 ? f_.parameter_names()[1] : "the second parameter"));
+    } else if (past_strong_resonance(b.u(i))) why = StopReason::strong_resonance;
     else if (hopf && hopf->kappa(b.u(i)) < 0.0) why = StopReason::bogdanov_takens;  // beyond: neutral saddles
     else if (observer && !observer(b, i)) why = StopReason::observer;
     return why == StopReason::none;
   };
   Walker walker(*system_, o.walk);
   const Branch b = [&] {
-    // Polished at its own p2 first.
-    const NewtonResult start = newton(*system_, system_->unknowns(u), {.tolerance = 1e-12, .max_iterations = 20});
+    // Polished at its own p2 first; of several pairs the one meant.
+    Vector near = system_->unknowns(u);
+    if (point_.type == EventType::hopf && std::isfinite(point_.frequency)) {
+      near[static_cast<int>(blocks_.indices[0].size()) + 1] = point_.frequency * point_.frequency;
+      system_->update_borders(near);
+    }
+    const NewtonResult start = newton(*system_, near, {.tolerance = 1e-12, .max_iterations = 20});
     if (!start.ok()) throw std::invalid_argument(fmt::format("the special point does not satisfy its system: {}", to_string(start.outcome)));
     const Vector up = Vector::Unit(system_->size() + 1, system_->size());
     const auto walk = [&](const Vector& direction) {
@@ -308,6 +325,7 @@ DefiningCurve Follower::run(double p2, const Observer& observer) {
   DefiningCurve curve;
   curve.type = point_.type;
   curve.subtype = point_.subtype;
+  curve.block = point_.block;
   curve.start_reason = b.start_reason;
   curve.stop_reason = b.stop_reason;
   const int count = b.points();
@@ -315,6 +333,12 @@ DefiningCurve Follower::run(double p2, const Observer& observer) {
   curve.coefficient.resize(count);
   curve.frequency.resize(count);
   curve.residual.resize(count);
+  for (int r = 0; r < static_cast<int>(f_.reflections().size()); ++r) {
+    double largest = 0.0;
+    for (int i = 0; i < count; ++i)
+      for (const int k : odd_coordinates(f_, r)) largest = std::max(largest, std::abs(base(b.u(i))[k]));
+    largest_odd_.push_back(largest);
+  }
   sense_ = Vector();
   double sense_at_point = 1.0, nearest = std::numeric_limits<double>::infinity();
   const auto all = tests();
@@ -347,6 +371,12 @@ DefiningCurve Follower::run(double p2, const Observer& observer) {
     e.residual = s.residual;
     e.arclength = s.arclength;
     if (symmetric(e.u)) continue;
+    // Where the curve crosses another of its kind its system is singular, and one turn may be met several times.
+    const auto again = [&](const CodimensionTwo& known) {
+      const double w1 = o.range1[1] - o.range1[0], w2 = o.range2[1] - o.range2[0];
+      return known.type == e.type && std::abs(known.u[n] - e.u[n]) < 1e-6 * w1 && std::abs(known.u[n + 1] - e.u[n + 1]) < 1e-6 * w2;
+    };
+    if (std::any_of(curve.special.begin(), curve.special.end(), again)) continue;
     curve.special.push_back(std::move(e));
   }
   return curve;
@@ -378,6 +408,52 @@ DefiningCurve follow(const Problem& problem2, const SpecialPoint& point, double 
   const auto* orbit = dynamic_cast<const OrbitProblem*>(&problem2);
   if (orbit && point.type == EventType::period_doubling) return follow_doubling(*orbit, point, p2, options, observer);
   return Follower(problem2, point, options).run(p2, observer);
+}
+
+std::vector<SpecialPoint> curves_through(const Problem& f, const DefiningCurve& curve, const CodimensionTwo& point) {
+  const int n = f.size();
+  std::vector<SpecialPoint> starts;
+  SpecialPoint start;
+  start.u = point.u.head(n + 1);
+  const bool double_zero = point.type == "BT", pair_too = point.type == "ZH" || point.type == "HH";
+  if (!f.is_flow() || !(double_zero || pair_too)) return starts;
+  if (curve.type == EventType::hopf && point.type != "HH") {
+    start.type = EventType::fold;
+    starts.push_back(start);
+    return starts;
+  }
+  // Of the pairs on the axis, those of the curve itself left out.
+  start.type = EventType::hopf;
+  start.block = curve.block;
+  if (double_zero) {
+    starts.push_back(start);
+    return starts;
+  }
+  double own = std::nan("");  // frequency of the curve there
+  double nearest = std::numeric_limits<double>::infinity();
+  for (Eigen::Index i = 0; i < curve.u.cols() && curve.type == EventType::hopf; ++i)
+    if (const double apart = (curve.u.col(i) - point.u).norm(); apart < nearest) {
+      nearest = apart;
+      own = curve.frequency[i];
+    }
+  const Blocks blocks = make_blocks(f, active_reflections(f, point.u.head(n)));
+  Matrix j(n, n + f.parameters());
+  f.jacobian(point.u, j);
+  double best = std::numeric_limits<double>::infinity();
+  for (int k = 0; k < static_cast<int>(blocks.indices.size()); ++k) {
+    const Indices& block = blocks.indices[static_cast<std::size_t>(k)];
+    if (block.empty()) continue;
+    const Eigen::VectorXcd eigenvalues = Eigen::EigenSolver<Matrix>(Matrix(j(block, block)), false).eigenvalues();
+    for (const auto& z : eigenvalues) {
+      const bool known = k == curve.block && std::abs(z.imag() - own) < 0.02 * own;
+      if (!(z.imag() > 0.0) || known || std::abs(z.real()) >= best) continue;
+      best = std::abs(z.real());
+      start.block = k;
+      start.frequency = z.imag();
+    }
+  }
+  if (best < 1e-4 * (1.0 + start.frequency)) starts.push_back(start);
+  return starts;
 }
 
 }  // namespace whirl::continuation

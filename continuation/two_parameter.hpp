@@ -35,6 +35,7 @@ struct TwoParameterOptions {
 struct DefiningCurve {
   EventType type = EventType::fold;
   std::string subtype;
+  int block = 0;       ///< symmetry block in which r_x is singular or has its pair
   Matrix u;            ///< (x, p1, p2) in columns; of a period doubling x is the motion over twice its period
   Vector coefficient;  ///< normal-form coefficient at each column, NaN where undefined
   Vector frequency;    ///< Hopf curves, rad per time unit; else 0
@@ -47,5 +48,9 @@ struct DefiningCurve {
 /// Follows the curve through `point` (of problem2 with p2 held at the value in `p2`). Throws std::invalid_argument if the point's type has no curve.
 DefiningCurve follow(const Problem& problem2, const SpecialPoint& point, double p2, const TwoParameterOptions& options,
                      const Observer& observer = {});
+
+/// Starts of the other curves that pass through a codimension-2 point of `curve`: of Hopf points through BT, ZH and HH, of folds through BT and ZH
+/// met on a Hopf curve. Each is to be followed with p2 = point.u[n + 1]; empty if there is none.
+std::vector<SpecialPoint> curves_through(const Problem& problem2, const DefiningCurve& curve, const CodimensionTwo& point);
 
 }  // namespace whirl::continuation

@@ -11,6 +11,10 @@
 
 namespace whirl::continuation {
 
+namespace {
+constexpr double rounding = 1e-11;  // |x| below it is zero: what Newton leaves of a coordinate that is zero
+}
+
 void WalkOptions::validate() const {
   if (!(lower < upper) || !std::isfinite(lower) || !std::isfinite(upper))
     throw std::invalid_argument(fmt::format("the parameter range must be increasing and finite, got [{}, {}]", lower, upper));
@@ -49,6 +53,7 @@ struct Walker::State {
   double factor = 1.0;  // by which the next step may change
   double max_turn;      // between successive tangents of unit length
   int accepted = 0;
+  bool scale_from_slope = false;
   bool has_signature = false;  // of `now`; not at a branch point, where it is undefined
   bool has_before = false;     // `before` is a point of its own
   StopReason stop = StopReason::none;
@@ -122,6 +127,7 @@ bool Walker::begin(const Vector& u0, const Vector& direction, bool from_branch_p
   s.branch.active_reflections = active;
   const double range = options_.upper - options_.lower;
   s.largest_x = u0.head(n).norm();
+  if (s.largest_x < rounding) s.largest_x = 0.0;  // Newton's remainder tells nothing of the size of x
   s.curve.set_scales(s.largest_x > 0.0 ? s.largest_x : 1.0, range);
   s.now->u = u0;
   if (from_branch_point) {
@@ -147,9 +153,11 @@ bool Walker::begin(const Vector& u0, const Vector& direction, bool from_branch_p
   } else {
     const Vector normal = direction;
     if (!s.curve.sample(u0, normal, *s.now)) return false;
-    if (s.largest_x == 0.0 && s.now->tangent.head(n).norm() > 0.0) {  // starts at rest: the slope tells the size of x
-      const double slope = s.now->tangent.head(n).norm() / std::abs(s.now->tangent[n]);
-      s.curve.set_scales(std::clamp(slope * range, 1e-12, 1e12), range);
+    const double slope = s.now->tangent.head(n).norm() / std::abs(s.now->tangent[n]);
+    if (s.largest_x == 0.0 && slope * range > rounding && slope * range < 1e8) {  // starts at rest: the slope, unless upright, tells the size of x
+      s.curve.set_scales(slope * range, range);
+      s.scale_from_slope = true;
+      s.step = std::max(options_.min_step, 0.05 * options_.initial_step);
       if (!s.curve.sample(u0, normal, *s.now)) return false;
     }
     s.has_signature = true;
@@ -190,7 +198,7 @@ bool Walker::correct() {
   double bound = 0.0;
   if (!within_bounds(index, bound)) {
     if (!reach_bound(index, bound)) return false;
-  } else if (!s.curve.complete(s.next->u, s.next->tangent, s.next->signature)) {
+  } else if (!s.curve.tangent(s.next->tangent)) {
     return false;
   }
   // A jump into a symmetric branch is no step along this one.
@@ -213,6 +221,9 @@ bool Walker::correct() {
   s.factor = std::clamp(std::max({by_angle, by_contraction, by_distance}), 0.5, 2.0);
   if (angle > limit && !first_off_branch_point && s.step > 4.0 * options_.min_step) return false;
   s.step_taken = s.curve.length(s.next->u - s.now->u);
+  // Newton has gone sideways by half the step or more: to another part of the curve, though it may run the same way there.
+  if (s.step_taken > 1.12 * s.step && !first_off_branch_point && s.step > 4.0 * options_.min_step) return false;
+  if (!s.curve.classify(s.next->u, s.next->tangent, s.next->signature)) return false;  // last: eigenvalues cost most
   s.next->lead = s.curve.leads_now();
   s.eigenvalues = s.curve.eigenvalues();
   s.next->residual = s.report.residual;
@@ -249,7 +260,7 @@ bool Walker::reach_bound(int index, double bound) {
   s.report = s.curve.correct(s.next->u, s.bend, s.predicted);
   if (!s.report.ok || s.curve.length(s.next->u - s.now->u) > 2.0 * s.step) return false;
   s.next->u[index] = bound;
-  if (!s.curve.complete(s.next->u, s.next->tangent, s.next->signature)) return false;
+  if (!s.curve.tangent(s.next->tangent)) return false;
   s.stop = StopReason::parameter_bound;
   return true;
 }
@@ -258,7 +269,16 @@ void Walker::shorten_step() {
   State& s = *s_;
   s.stop = StopReason::none;
   s.step *= 0.5;
-  if (s.step < options_.min_step) s.stop = StopReason::min_step;
+  if (s.step >= options_.min_step) return;
+  // A branch point on the end of the range has no tangent to end on.
+  const int n = problem_.size();
+  const double p = s.now->u[n], near = 1e-8 * (options_.upper - options_.lower);
+  const bool at_end = s.now->tangent[n] > 0.0 ? p > options_.upper - near : p < options_.lower + near;
+  s.stop = at_end ? StopReason::parameter_bound : StopReason::min_step;
+  SpecialPoint last;
+  if (!at_end || !options_.locate_events || !s.has_signature || !s.finder.branch_point_at(*s.now, last)) return;
+  last.arclength = s.arclength + s.curve.length(last.u - s.now->u);
+  s.branch.special.push_back(std::move(last));
 }
 
 void Walker::lengthen_step() {
@@ -292,8 +312,9 @@ void Walker::locate_events() {
   // At either end of the walk there is no point beyond that would show a turn.
   const int first = s.branch.start_reason == StopReason::known_branch_point ? 1 : 0;
   const bool last = s.stop != StopReason::none || s.accepted == first;
-  if (last || !(s.now->signature == s.next->signature) || s.finder.turns_at(*s.before, *s.now, *s.next))
+  if (last || !(s.now->signature == s.next->signature) || !(s.before->signature == s.now->signature) || s.finder.turns_at(*s.before, *s.now, *s.next))
     for (auto& e : s.finder.find(*s.before, *s.now, *s.next, last)) {
+      if (is_known(e)) continue;
       const Vector from_now = e.u - s.now->u;
       const bool behind = s.curve.dot(from_now, s.next->u - s.now->u) < 0.0;
       e.arclength = s.arclength + (behind ? -1.0 : 1.0) * s.curve.length(from_now);
@@ -302,7 +323,21 @@ void Walker::locate_events() {
   find_peaks_and_values();
 }
 
+// A step may be searched twice, as the one behind and as the one ahead of a turn.
+bool Walker::is_known(const SpecialPoint& e) const {
+  const auto& known = s_->branch.special;
+  return std::any_of(known.rbegin(), known.rend(), [&](const SpecialPoint& k) {
+    return k.type == e.type && k.block == e.block && std::abs(k.frequency - e.frequency) <= 1e-6 * k.frequency &&
+           std::abs(k.arclength - s_->arclength) < 3.0 * options_.max_step && s_->curve.length(k.u - e.u) < 1e-9;
+  });
+}
+
 void Walker::find_peaks_and_values() {
+  if (!options_.user_values.empty()) find_user_values();
+  for (const auto& peak : options_.peaks) find_peak(peak);
+}
+
+void Walker::find_user_values() {
   State& s = *s_;
   const int n = problem_.size();
   const auto add = [&](EventType type, const std::string& subtype, const Sample& at) {
@@ -318,16 +353,27 @@ void Walker::find_peaks_and_values() {
     p.unstable_before = p.unstable_after = at.signature.total_unstable();
     s.branch.special.push_back(std::move(p));
   };
-  for (double value : options_.user_values) {
-    if ((s.now->u[n] - value) * (s.next->u[n] - value) > 0.0 || s.now->u[n] == value) continue;
-    const double part = (value - s.now->u[n]) / (s.next->u[n] - s.now->u[n]);
-    Vector guess = s.now->u + part * (s.next->u - s.now->u);
-    guess[n] = value;
-    const Vector normal = Vector::Unit(n + 1, n) * (s.next->u[n] > s.now->u[n] ? 1.0 : -1.0);
-    Sample at;
-    if (s.curve.sample(guess, normal, at)) add(EventType::user_value, "", at);
-  }
-  for (const auto& peak : options_.peaks) find_peak(peak);
+  // A fold within the step parts it in two, each of which may meet a value that the ends do not enclose.
+  std::vector<const Vector*> knots = {&s.now->u};
+  for (const auto& e : s.branch.special)
+    if (e.type == EventType::fold && e.arclength > s.arclength && e.arclength < s.arclength + s.step_taken) knots.push_back(&e.u);
+  knots.push_back(&s.next->u);
+  std::vector<Sample> met;
+  for (const double value : options_.user_values)
+    for (std::size_t k = 0; k + 1 < knots.size(); ++k) {
+      const Vector &a = *knots[k], &b = *knots[k + 1];
+      if ((a[n] - value) * (b[n] - value) > 0.0 || a[n] == value) continue;
+      // From a fold the parameter goes with the square of the distance.
+      const bool from_fold = k > 0, to_fold = k + 2 < knots.size();
+      const double linear = (value - a[n]) / (b[n] - a[n]);
+      const double part = from_fold && !to_fold ? std::sqrt(linear) : to_fold && !from_fold ? 1.0 - std::sqrt(1.0 - linear) : linear;
+      Vector guess = a + part * (b - a);
+      guess[n] = value;
+      const Vector normal = Vector::Unit(n + 1, n) * (b[n] > a[n] ? 1.0 : -1.0);
+      Sample at;
+      if (s.curve.sample(guess, normal, at)) met.push_back(std::move(at));
+    }
+  for (const Sample& at : met) add(EventType::user_value, "", at);
 }
 
 // An extremum of the observable within the step: its slope along the tangent changes sign.
@@ -385,7 +431,6 @@ void Walker::find_peak(const Observable& peak) {
 
 void Walker::accept() {
   State& s = *s_;
-  const int n = problem_.size();
   if (s.accepted > 2 && close_loop()) return;
   s.arclength += s.step_taken;
   s.branch.append(s.next->u, s.next->tangent, s.arclength, s.next->residual, s.step, s.next->iterations, s.next->signature.total_unstable(),
@@ -396,18 +441,31 @@ void Walker::accept() {
   if (!s.has_signature) *s.before = *s.now;
   s.has_signature = true;
   ++s.accepted;
-  const double size = s.now->u.head(n).norm();
-  if (size > 2.0 * s.largest_x || s.largest_x == 0.0) {
-    s.largest_x = size;
-    if (size > s.curve.x_scale()) {
-      s.curve.set_scales(size, options_.upper - options_.lower);
-      for (auto* p : {s.before, s.now}) p->tangent /= s.curve.length(p->tangent);
-      s.start_tangent /= s.curve.length(s.start_tangent);  // close_loop measures in the new metric
-      s.step_taken = s.curve.length(s.now->u - s.before->u);
-    }
-  }
+  keep_scale();
   if (s.stop == StopReason::none && s.branch.points() == s.branch.capacity()) s.stop = StopReason::max_points;
   if (s.stop == StopReason::none && s.observer && *s.observer && !(*s.observer)(s.branch, s.branch.points() - 1)) s.stop = StopReason::observer;
+}
+
+// x is measured by the largest met so far; until the parameter has moved, a start at rest knows only the slope it had there.
+void Walker::keep_scale() {
+  State& s = *s_;
+  const int n = problem_.size();
+  const double range = options_.upper - options_.lower, size = s.now->u.head(n).norm(), moved = std::abs(s.now->u[n] - s.start_u[n]);
+  double scale = s.curve.x_scale();
+  if (size > 2.0 * s.largest_x || s.largest_x == 0.0) {
+    s.largest_x = size;
+    scale = std::max(scale, size);
+  }
+  if (s.scale_from_slope) {
+    const double by_chord = std::max(s.largest_x, size * range / moved);
+    if (by_chord < 0.5 * scale && by_chord > rounding) scale = by_chord;
+    s.scale_from_slope = moved < 0.05 * range;
+  }
+  if (scale == s.curve.x_scale()) return;
+  s.curve.set_scales(scale, range);
+  for (auto* p : {s.before, s.now}) p->tangent /= s.curve.length(p->tangent);
+  s.start_tangent /= s.curve.length(s.start_tangent);  // close_loop measures in the new metric
+  s.step_taken = s.curve.length(s.now->u - s.before->u);
 }
 
 // Does the step pass the first point in its sense? Then the curve is closed.
@@ -423,8 +481,17 @@ bool Walker::close_loop() {
   s.predicted = s.start_u;
   Sample at;
   const Vector chord = s.next->u - s.now->u, before_start = s.now->u + (ahead / s.step_taken) * chord;
+  const double apart = s.curve.length(before_start - s.start_u);
+  if (s.branch.start_reason == StopReason::known_branch_point) {  // no plane to solve in: the curve passes it, in its direction
+    if (apart > 0.05 * s.step_taken || s.curve.dot(s.now->tangent, s.start_tangent) < 0.95) return false;
+    s.arclength += s.curve.length(s.start_u - s.now->u);
+    s.branch.append(s.start_u, s.start_tangent, s.arclength, s.branch.residual(0), s.step, 0, s.branch.n_unstable(0), &s.eigenvalues);
+    std::erase_if(s.branch.special, [&s](const SpecialPoint& e) { return e.arclength > s.arclength - 1e-6; });
+    s.stop = StopReason::closed_loop;
+    return true;
+  }
   // Off the chord by the curvature only, and Newton from there in the start's plane must come to the start.
-  if (s.curve.length(before_start - s.start_u) > 0.3 * s.step_taken) return false;
+  if (apart > 0.3 * s.step_taken) return false;
   Vector guess = before_start;
   if (!s.curve.sample(guess, s.start_tangent, at)) return false;
   const double shift = s.curve.dot(s.start_u - at.u, s.start_tangent);

@@ -5,9 +5,9 @@
 ///     Branch branch = walker.walk(u0);                      // both directions from a solution u0 = (x0, p0)
 ///     Branch half = walker.walk_from(u_bp, direction);      // one direction, e.g. off a branch point
 ///
-/// Step control needs no tuning: lengths are measured in units of the parameter range and of the largest |x| met; the step follows the
-/// turning angle of the tangent, the first correction and the contraction of Newton. Throws std::invalid_argument for options out of range.
-/// A walk that cannot go on ends with a stop reason and all points so far.
+/// The predictor is the cubic through the last two points and their tangents. Step control needs no tuning: lengths are measured in units of the
+/// parameter range and of the largest |x| met; the step follows the turning angle of the tangent, the first correction and the contraction of Newton.
+/// Throws std::invalid_argument for options out of range. A walk that cannot go on ends with a stop reason and all points so far.
 
 #include <functional>
 #include <optional>
@@ -74,8 +74,11 @@ class Walker {
   bool leaves_range(In u, In direction) const;
   bool reach_bound(int index, double bound);
   bool within_bounds(int& index, double& bound) const;
+  void keep_scale();
   bool close_loop();
+  bool is_known(const SpecialPoint& e) const;
   void find_peaks_and_values();
+  void find_user_values();
   void find_peak(const Observable& peak);
   void lengthen_step();
 

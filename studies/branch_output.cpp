@@ -64,7 +64,7 @@ void BranchOutput::write_branch(ResultFile& file, const Branch& b) const {
   file.attribute(group, "start_reason", std::string(to_string(b.start_reason)));
   file.attribute(group, "stop_reason", std::string(to_string(b.stop_reason)));
   file.attribute(group, "isola", b.isola ? 1.0 : 0.0);
-  file.attribute(group, "mirror_image_exists", b.active_reflections.empty() ? 1.0 : 0.0);
+  file.attribute(group, "mirror_image_exists", b.mirror_image ? 1.0 : 0.0);
 }
 
 void BranchOutput::write_special_points(ResultFile& file, const std::vector<Branch>& branches) const {

@@ -236,19 +236,35 @@ void write_cable_numbers(ResultFile& file, const Cable<double>& cable) {
   file.scalar("/cable", "frequency2", m.omega2 / (2.0 * std::numbers::pi), "Hz", "first symmetric in-plane frequency");
 }
 
+namespace {
+
+// One line each, the first few; all stand in the table of special points.
+void warn_of_unresolved(const continuation::Branch& b, RunContext& context) {
+  constexpr int most = 5;
+  int count = 0;
+  for (const auto& s : b.special) {
+    if (s.type != continuation::EventType::unresolved || ++count > most) continue;
+    context.warn(fmt::format("branch {}: a change of stability between {:.10g} and {:.10g} is unresolved", b.name, s.bracket[0], s.bracket[1]));
+  }
+  if (count > most) context.warn(fmt::format("branch {}: {} more changes of stability are unresolved", b.name, count - most));
+}
+
+}  // namespace
+
 ExitStatus finish(ResultFile& file, RunContext& context, const std::vector<continuation::Branch>& branches) {
   ExitStatus status = ExitStatus::ok;
   std::vector<std::string> reasons;
   for (const auto& b : branches) {
     reasons.push_back(fmt::format("{}: {}, {}", b.name, to_string(b.start_reason), to_string(b.stop_reason)));
-    for (const auto reason : {b.start_reason, b.stop_reason})
-      if (reason == continuation::StopReason::min_step || reason == continuation::StopReason::max_points) {
-        context.warn(fmt::format("branch {} ended early: {}", b.name, to_string(reason)));
-        status = ExitStatus::numerical_failure;
-      }
-    for (const auto& s : b.special)
-      if (s.type == continuation::EventType::unresolved)
-        context.warn(fmt::format("branch {}: a change of stability between {:.10g} and {:.10g} is unresolved", b.name, s.bracket[0], s.bracket[1]));
+    const auto early = [](continuation::StopReason r) {
+      return r == continuation::StopReason::min_step || r == continuation::StopReason::max_points;
+    };
+    const bool alike = b.start_reason == b.stop_reason;
+    if (early(b.start_reason))
+      context.warn(fmt::format("branch {} ended early: {}{}", b.name, to_string(b.start_reason), alike ? " at both ends" : ""));
+    if (early(b.stop_reason) && !alike) context.warn(fmt::format("branch {} ended early: {}", b.name, to_string(b.stop_reason)));
+    if (early(b.start_reason) || early(b.stop_reason)) status = ExitStatus::numerical_failure;
+    warn_of_unresolved(b, context);
   }
   if (branches.empty()) status = ExitStatus::numerical_failure;
   if (interrupted) status = ExitStatus::stopped_by_user;

@@ -1,6 +1,7 @@
 #include "studies/continuation_study.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "continuation/deflation.hpp"
 #include "studies/common_keys.hpp"
@@ -111,6 +112,8 @@ ExitStatus run(const Configuration& c, RunContext& context) {
   explore(*f, s, net, c.numbers("continuation.deflate_at"), context);
   output.write_special_points(file, net.branches());
   file.flush();
+  if (const auto left = net.not_followed(); !left.empty() && !net.stopped() && s.network.depth > 0)
+    context.warn(fmt::format("branches at {} are not followed: continuation.depth is {}", fmt::join(left, ", "), s.network.depth));
   context.progress.clear();
   if (context.json) fmt::print("{}", output.json(net.branches()));
   if (!context.quiet) fmt::print(stderr, "{}", output.text(net.branches()));

@@ -141,30 +141,18 @@ class ExpressionSource : public EquilibriumSource {
     return [](const Branch&) { return "B"; };
   }
 
-  // `initial` at the parameter's own value if that lies in the range, at the lower end and the upper; then by deflation whatever else Newton
-  // reaches there from `initial`, from the solutions known and from points around them.
+  // `initial` at the parameter's own value if that lies in the range, at the lower end and the upper, and only if there is no rest point at any of
+  // them at values between (an isola, say); by deflation whatever else Newton reaches there from points around it.
   std::vector<Start> starts(const Problem& f, const std::string& lens, double lower, double upper) const override {
-    const int n = model_.size();
-    std::vector<double> at;
-    if (value(lens) >= lower && value(lens) <= upper) at.push_back(value(lens));
-    at.insert(at.end(), {lower, upper});
     std::vector<Start> all;
-    Vector guess(n + 1);
-    for (int i = 0; i < n; ++i) guess[i] = model_.initial[static_cast<std::size_t>(i)];
-    for (const double p : at) {
-      guess[n] = p;
-      NewtonResult first = newton(f, guess);
-      if (!first.ok()) first = line_search_solve(f, guess);
-      std::vector<Vector> known, from = {guess};
-      if (first.ok()) known.push_back(first.x);
-      for (const double part : {0.3, -0.3, 1.0, -1.0})
-        for (int i = 0; i < n; ++i) {
-          Vector u = first.ok() ? first.x : guess;
-          u[i] += part * std::max(1.0, std::abs(u[i]));
-          from.push_back(u);
-        }
-      for (const auto& u : deflated_solutions(f, known, from)) all.push_back({u, fmt::format("{} = {:.6g}", lens, p)});
-    }
+    const auto look = [&](double p) {
+      for (const auto& u : rest_points(f, p)) all.push_back({u, fmt::format("{} = {:.6g}", lens, p)});
+    };
+    if (value(lens) >= lower && value(lens) <= upper) look(value(lens));
+    look(lower);
+    look(upper);
+    for (int parts = 2; parts <= 32 && all.empty(); parts *= 2)
+      for (int i = 1; i < parts; i += 2) look(lower + (upper - lower) * i / parts);
     return all;
   }
   void write(ResultFile& file) const override {
@@ -175,6 +163,25 @@ class ExpressionSource : public EquilibriumSource {
   }
 
  private:
+  std::vector<Vector> rest_points(const Problem& f, double p) const {
+    const int n = model_.size();
+    Vector guess(n + 1);
+    for (int i = 0; i < n; ++i) guess[i] = model_.initial[static_cast<std::size_t>(i)];
+    guess[n] = p;
+    NewtonResult first = newton(f, guess);
+    if (!first.ok()) first = line_search_solve(f, guess);
+    const Vector centre = first.ok() ? first.x : guess;
+    std::vector<Vector> known, from = {guess};
+    if (first.ok()) known.push_back(first.x);
+    for (const double part : {0.3, -0.3, 1.0, -1.0, 3.0, -3.0}) {
+      for (int i = 0; i <= n; ++i) {  // each coordinate, then all together
+        Vector u = centre;
+        for (int k = i < n ? i : 0; k < (i < n ? i + 1 : n); ++k) u[k] += part * std::max(1.0, std::abs(u[k]));
+        from.push_back(u);
+      }
+    }
+    return deflated_solutions(f, known, from);
+  }
   Indices indices(const Amplitude& a) const {
     Indices of;
     for (const auto& name : a.variables)

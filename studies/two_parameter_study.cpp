@@ -122,12 +122,31 @@ bool on_known_curve(const Problem& f, const std::vector<DefiningCurve>& curves, 
   return false;
 }
 
-std::string json(const Setup& s, int n, const std::vector<DefiningCurve>& curves) {
+// Does a curve lie on one followed before? Where most of its points do.
+bool repeats(const Problem& f, const std::vector<DefiningCurve>& curves, const DefiningCurve& curve, const Setup& s) {
+  const int n = f.size();
+  int known = 0, asked = 0;
+  for (int part = 1; part < 6; ++part, ++asked) {
+    const Vector u = curve.u.col(part * (curve.u.cols() - 1) / 6);
+    SpecialPoint at;
+    at.type = curve.type;
+    at.subtype = curve.subtype;
+    at.u = u.head(n + 1);
+    known += on_known_curve(f, curves, at, u[n + 1], s) ? 1 : 0;
+  }
+  return 2 * known > asked;
+}
+
+std::string json(const Setup& s, int n, const std::vector<PointColumn>& columns, const std::vector<DefiningCurve>& curves) {
   std::string points, summary;
   for (const auto& c : curves) {
-    for (const auto& z : c.special)
-      points += fmt::format(R"({}    {{"curve": "{}", "type": "{}", "{}": {:.17g}, "{}": {:.17g}, "residual": {:.3g}}})",
-                            points.empty() ? "\n" : ",\n", c.name, z.type, s.first, z.u[n], s.second, z.u[n + 1], z.residual);
+    for (const auto& z : c.special) {
+      std::string state;
+      for (const auto& column : columns)
+        if (const double x = column.value(z.u); std::isfinite(x)) state += fmt::format(R"(, "{}": {:.17g})", column.name, x);
+      points += fmt::format(R"({}    {{"curve": "{}", "type": "{}", "{}": {:.17g}, "{}": {:.17g}{}, "residual": {:.3g}}})",
+                            points.empty() ? "\n" : ",\n", c.name, z.type, s.first, z.u[n], s.second, z.u[n + 1], state, z.residual);
+    }
     summary += fmt::format(
         R"({}    {{"name": "{}", "type": "{}", "subtype": "{}", "born_at": "{}", "points": {}, "start_reason": "{}", "stop_reason": "{}"}})",
         summary.empty() ? "\n" : ",\n", c.name, to_string(c.type), c.subtype, c.born_at, c.u.cols(), to_string(c.start_reason),
@@ -165,32 +184,39 @@ ExitStatus run(const Configuration& c, RunContext& context) {
     try_seed(net, start.u, start.origin, context);
     net.switch_branches();
   }
-  const double p2 = s.source->value(s.second);
   std::vector<DefiningCurve> curves;
-  int number = 0;
-  for (const auto& b : net.branches())
-    for (std::size_t i = 0; i < b.special.size() && !interrupted; ++i) {
-      const auto& point = b.special[i];
-      const bool wanted = std::find(s.curves.begin(), s.curves.end(), to_string(point.type)) != s.curves.end();
-      if (!wanted || on_known_curve(*f, curves, point, p2, s)) continue;
-      SpecialPoint seed = point;
-      // The same point stands on the branch whose symmetry breaks there.
-      if (seed.type == EventType::branch_point && seed.block == 0 && i + 1 == b.special.size() && b.stop_reason == StopReason::symmetric_branch)
-        continue;
-      DefiningCurve curve;
-      try {
-        curve = follow(*f2, seed, p2, s.follow, observer);
-      } catch (const std::invalid_argument& e) {
-        context.warn(fmt::format("{} on {}: {}", label(b, i), b.name, e.what()));
-        continue;
-      }
-      curve.name = fmt::format("{}{}", point.subtype.empty() ? to_string(point.type) : point.subtype.c_str(), ++number);
-      curve.born_at = fmt::format("{}:{}", b.name, label(b, i));
-      write_curve(file, s, *f2, curve);
-      file.flush();
-      context.progress.show(fmt::format("curve {}", curve.name));
-      curves.push_back(std::move(curve));
+  const auto follow_from = [&](const SpecialPoint& point, double p2, const std::string& origin, bool told) {
+    const bool wanted = std::find(s.curves.begin(), s.curves.end(), to_string(point.type)) != s.curves.end();
+    if (interrupted || !wanted || on_known_curve(*f, curves, point, p2, s)) return;
+    DefiningCurve curve;
+    try {
+      curve = follow(*f2, point, p2, s.follow, observer);
+    } catch (const std::invalid_argument& e) {
+      if (told) context.warn(fmt::format("{}: {}", origin, e.what()));
+      return;
     }
+    if (!told && repeats(*f, curves, curve, s)) return;
+    curve.name = fmt::format("{}{}", point.subtype.empty() ? to_string(point.type) : point.subtype.c_str(), curves.size() + 1);
+    curve.born_at = origin;
+    write_curve(file, s, *f2, curve);
+    file.flush();
+    context.progress.show(fmt::format("curve {}", curve.name));
+    curves.push_back(std::move(curve));
+  };
+  for (const auto& b : net.branches())
+    for (std::size_t i = 0; i < b.special.size(); ++i) {
+      const auto& point = b.special[i];
+      // The same point stands on the branch whose symmetry breaks there.
+      const bool arrival =
+          point.type == EventType::branch_point && point.block == 0 && i + 1 == b.special.size() && b.stop_reason == StopReason::symmetric_branch;
+      if (!arrival) follow_from(point, s.source->value(s.second), fmt::format("{}:{}", b.name, label(b, i)), true);
+    }
+  for (std::size_t k = 0; k < curves.size(); ++k) {  // curves met on the way lead to further ones
+    const std::vector<CodimensionTwo> met = curves[k].special;
+    for (const auto& z : met)
+      for (const SpecialPoint& start : curves_through(*f2, curves[k], z))
+        follow_from(start, z.u[n + 1], fmt::format("{}:{}", curves[k].name, z.type), false);
+  }
   context.progress.clear();
   std::vector<Column> table{{s.first, s.source->unit(s.first), "first parameter", {}},
                             {s.second, s.source->unit(s.second), "second parameter", {}},
@@ -207,8 +233,14 @@ ExitStatus run(const Configuration& c, RunContext& context) {
       names.values.push_back(curve.name);
       types.values.push_back(z.type);
     }
+  for (const auto& coordinate : s.source->columns(*f2)) {
+    Column state{coordinate.name, coordinate.unit, coordinate.description, {}};
+    for (const auto& curve : curves)
+      for (const auto& z : curve.special) state.values.push_back(coordinate.value(z.u));
+    table.push_back(std::move(state));
+  }
   file.table("/special_points", table, {names, types});
-  if (context.json) fmt::print("{}", json(s, n, curves));
+  if (context.json) fmt::print("{}", json(s, n, s.source->columns(*f2), curves));
   if (!context.quiet) fmt::print(stderr, "{}", text(s, n, curves));
   return finish(file, context, net.branches());
 }

@@ -126,6 +126,35 @@ TEST_CASE("charts of systems given as expressions", "[continuation_study][publis
   CHECK(r.out.find("\"type\": \"RP\"") != std::string::npos);
 }
 
+TEST_CASE("one chart with every codimension-2 point", "[continuation_study][published]") {
+  const Folder f;
+  const Ran r = f.run(study("lorenz-84-chart.toml") + " --json");
+  CHECK(r.status == 0);
+  for (const double T : values(r.out, "HH", "T")) CHECK(std::abs(std::abs(T) - 0.02627393) < 1e-6);  // published digits
+  for (const char* type : {"CP", "BT", "ZH", "HH", "GH"}) CHECK_FALSE(values(r.out, type, "F").empty());
+  CHECK(values(r.out, "BT", "u").size() == values(r.out, "BT", "F").size());  // the variables stand beside the parameters
+}
+
+TEST_CASE("eight branches leave a double zero, each told where it was born", "[continuation_study]") {
+  const Folder f;
+  const Ran r = f.run(study("two-modes-pitchforks.toml") + " --json");
+  CHECK(r.status == 0);
+  CHECK(r.out.find("\"subtype\": \"multiple\"") != std::string::npos);
+  std::size_t born = 0;
+  for (std::size_t at = r.out.find("\"born_at\": \"B1:BP1\""); at != std::string::npos; at = r.out.find("\"born_at\": \"B1:BP1\"", at + 1)) ++born;
+  CHECK(born == 8);
+}
+
+TEST_CASE("a closed curve between the ends of the range is found without a seed", "[continuation_study]") {
+  const Folder f;
+  std::string text = cusp;
+  text = std::regex_replace(text, std::regex("mu \\+ lambda\\*x - x\\^3"), "lambda - x^2 - 16*mu^2");
+  const Ran r = f.run_text(text, "--json");
+  CHECK(r.status == 0);
+  check_values(values(r.out, "LP", "mu"), {-0.25, 0.25}, 1e-10);
+  CHECK(r.out.find("\"stop_reason\": \"closed_loop\"") != std::string::npos);
+}
+
 TEST_CASE("isolas are found by deflation and told", "[continuation_study]") {
   const Folder f;
   const std::string text = R"toml(study = "continuation"
