@@ -2,7 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
+
+#include "core/legendre.hpp"
 
 namespace whirl::models {
 namespace {
@@ -13,47 +14,26 @@ constexpr int most_sweeps = 24;
 
 std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
-// P_0(y) .. P_count-1(y)
-template <std::size_t count>
-std::array<double, count> legendre(double y) {
-  std::array<double, count> p{};
-  p[0] = 1.0;
-  p[1] = y;
-  for (std::size_t j = 2; j < count; ++j) {
-    const double k = static_cast<double>(j);
-    p[j] = ((2.0 * k - 1.0) * y * p[j - 1] - (k - 1.0) * p[j - 2]) / k;
-  }
-  return p;
-}
-
 }  // namespace
 
 GaussNystrom::GaussNystrom() {
-  constexpr std::size_t s = nodes;
-  std::array<std::array<double, s + 1>, s> p;  // Legendre polynomials at the nodes
-  for (std::size_t m = 0; m < s; ++m) {
-    double y = -std::cos(std::numbers::pi * (static_cast<double>(m) + 0.75) / (s + 0.5));  // Newton on P_s
-    for (int i = 0; i < 20; ++i) {
-      const auto v = legendre<s + 1>(y);
-      y -= v[s] * (y * y - 1.0) / (static_cast<double>(s) * (y * v[s] - v[s - 1]));
-    }
-    p[m] = legendre<s + 1>(y);
-    const double slope = static_cast<double>(s) * (y * p[m][s] - p[m][s - 1]) / (y * y - 1.0);
-    c[m] = 0.5 * (1.0 + y);
-    b[m] = 1.0 / ((1.0 - y * y) * slope * slope);
-  }
+  constexpr int s = nodes;
+  const GaussRule rule = gauss_legendre(s);
+  const Matrix p = legendre_values(rule.nodes, s + 1);
   // A_ml = integral to c_m of the Lagrange polynomial of node l, by its Legendre series.
-  Eigen::Matrix<double, nodes, nodes> a;
-  for (std::size_t m = 0; m < s; ++m)
-    for (std::size_t l = 0; l < s; ++l) {
-      double sum = c[m];
-      for (std::size_t j = 1; j < s; ++j) sum += p[l][j] * 0.5 * (p[m][j + 1] - p[m][j - 1]);
-      a(static_cast<int>(m), static_cast<int>(l)) = b[l] * sum;
+  Eigen::Matrix<double, s, s> a;
+  for (int m = 0; m < s; ++m)
+    for (int l = 0; l < s; ++l) {
+      double sum = 0.5 * (1.0 + rule.nodes[m]);
+      for (int j = 1; j < s; ++j) sum += p(l, j) * 0.5 * (p(m, j + 1) - p(m, j - 1));
+      a(m, l) = 0.5 * rule.weights[l] * sum;
     }
-  const Eigen::Matrix<double, nodes, nodes> a2 = a * a;
-  for (std::size_t m = 0; m < s; ++m) {
-    bbar[m] = b[m] * (1.0 - c[m]);
-    for (std::size_t l = 0; l < s; ++l) abar[m][l] = a2(static_cast<int>(m), static_cast<int>(l));
+  const Eigen::Matrix<double, s, s> a2 = a * a;
+  for (int m = 0; m < s; ++m) {
+    c[at(m)] = 0.5 * (1.0 + rule.nodes[m]);
+    b[at(m)] = 0.5 * rule.weights[m];
+    bbar[at(m)] = b[at(m)] * (1.0 - c[at(m)]);
+    for (int l = 0; l < s; ++l) abar[at(m)][at(l)] = a2(m, l);
   }
 }
 
