@@ -280,21 +280,22 @@ TEST_CASE("settle: a motion that decays more slowly than it is given time is tol
   };
   const SettleOptions o{.max_periods = 400, .samples = 16, .record_periods = 8, .lyapunov_periods = 64};
   const double c = 3e-4;  // over the periods given the free part falls by a third
-  const SteadyMotion decaying = settle(oscillator(c), point({1.0, 0.0}), o);
+  const SteadyMotion decaying = settle(oscillator(c), point({2.0, 0.0}), o);
   CHECK(decaying.kind == MotionKind::unsettled);
-  CHECK(decaying.decay_rate == Approx(0.5 * c).epsilon(0.05));  // the largest of 50 distances each, whose beat is not resolved
+  // The largest of 50 distances at either end, between which the beat leaves 1 %; the decay between them is 14 %.
+  CHECK(decaying.decay_rate == Approx(0.5 * c).epsilon(0.1));
   CHECK(decaying.why.find("still decaying after 400 periods") == 0);
-  const SteadyMotion growing = settle(oscillator(-c), point({1.0, 0.0}), o);
+  const SteadyMotion growing = settle(oscillator(-c), point({2.0, 0.0}), o);
   CHECK(growing.kind == MotionKind::unsettled);
-  CHECK(growing.decay_rate == Approx(-0.5 * c).epsilon(0.05));
+  CHECK(growing.decay_rate == Approx(-0.5 * c).epsilon(0.1));
   CHECK(growing.why.find("still growing") == 0);
   // Without damping the free part lasts: two frequencies for ever.
-  const SteadyMotion lasting = settle(oscillator(0.0), point({1.0, 0.0}), o);
+  const SteadyMotion lasting = settle(oscillator(0.0), point({2.0, 0.0}), o);
   CHECK(lasting.kind == MotionKind::quasi_periodic);
   CHECK(lasting.why.empty());
   CHECK(lasting.decay_rate == 0.0);
   // With more time the slow one settles.
-  CHECK(settle(oscillator(0.05), point({1.0, 0.0}), o).kind == MotionKind::periodic);
+  CHECK(settle(oscillator(0.05), point({2.0, 0.0}), o).kind == MotionKind::periodic);
 }
 
 TEST_CASE("settle: between the torus points of the 1:2 pair the motion lasts without a period") {
