@@ -53,8 +53,8 @@ Matrix legendre_values(In t, int count) {
   Matrix p(t.size(), count);
   p.col(0).setOnes();
   if (count > 1) p.col(1) = t;
-  for (int k = 1; k + 1 < count; ++k)
-    p.col(k + 1) = ((2.0 * k + 1.0) / (k + 1.0)) * t.cwiseProduct(p.col(k)) - (double(k) / (k + 1.0)) * p.col(k - 1);
+  // (2 k + 1) t first: with the products in another order the stiffness of slack guys loses a digit.
+  for (int k = 1; k + 1 < count; ++k) p.col(k + 1) = (((2.0 * k + 1.0) * t).cwiseProduct(p.col(k)) - double(k) * p.col(k - 1)) / (k + 1.0);
   return p;
 }
 

@@ -75,6 +75,11 @@ AttractorFinder::AttractorFinder(const ModalSystem<double>& system, const Attrac
 }
 
 std::optional<Attractor> AttractorFinder::refine(const Vector& start, int multiple) {
+  Saddle at;
+  return refine(start, multiple, at);
+}
+
+std::optional<Attractor> AttractorFinder::refine(const Vector& start, int multiple, Saddle& at) {
   const Eigen::Index n = start.size();
   Vector x = start;
   Matrix derivative;
@@ -96,7 +101,7 @@ std::optional<Attractor> AttractorFinder::refine(const Vector& start, int multip
   for (int j = 0; j < multiple; ++j) {
     a.points.col(j) = y;
     if (!fine_.map(y)) return std::nullopt;
-    if (j + 1 < multiple && multiple % (j + 1) == 0 && (y - x).norm() < 1e-6 * (1.0 + x.norm())) return refine(x, j + 1);
+    if (j + 1 < multiple && multiple % (j + 1) == 0 && (y - x).norm() < 1e-6 * (1.0 + x.norm())) return refine(x, j + 1, at);
   }
   a.residual = (y - x).norm();
   if (a.residual > 1e-7 * (1.0 + x.norm())) return std::nullopt;
@@ -105,7 +110,16 @@ std::optional<Attractor> AttractorFinder::refine(const Vector& start, int multip
   a.multipliers = derivative.eigenvalues();
   std::sort(a.multipliers.begin(), a.multipliers.end(), [](auto p, auto q) { return std::abs(p) > std::abs(q); });
   a.lyapunov = std::log(std::abs(a.multipliers[0])) / (multiple * fine_.period());
+  at = {multiple, x, derivative};
   return a;
+}
+
+// Near an unstable motion a state comes back to itself nearly, and Newton's method would find that motion again, at much cost for large multiples.
+bool AttractorFinder::explains(const Saddle& s, const Vector& before, const Vector& after, int periods) {
+  if (periods % s.multiple != 0) return false;
+  Vector d = before - s.point;
+  for (int k = 0; k < periods / s.multiple; ++k) d = s.derivative * d;
+  return (after - s.point - d).norm() < 0.1 * (after - before).norm();
 }
 
 Settled AttractorFinder::settle(Vector y, const AttractorSet& known, double phase) {
@@ -121,6 +135,7 @@ Settled AttractorFinder::settle(Vector y, const AttractorSet& known, double phas
   Matrix past(y.size(), options_.max_multiple);
   std::vector<int> hits(static_cast<std::size_t>(known.size()), 0);
   std::vector<std::pair<Attractor, Capture>> candidates;
+  std::vector<Saddle> saddles;  // met on the way
   int next_try = 3, wait = 3, ask = options_.nonperiodic_after;
   bool postponed = false;
   for (int k = 1; k <= options_.max_periods; ++k) {
@@ -145,11 +160,20 @@ Settled AttractorFinder::settle(Vector y, const AttractorSet& known, double phas
         return s;
       }
     if (k >= next_try) {
+      std::vector<double> apart;  // from where it was m periods before
       for (int m = 1; m <= std::min(options_.max_multiple, k); ++m) {
-        const double apart = (y - past.col((k - m) % options_.max_multiple)).norm();
-        if (m == 1) s.distance = apart;
-        if (apart > options_.newton_radius * (1.0 + y.norm())) continue;
-        auto a = refine(y, m);
+        apart.push_back((y - past.col((k - m) % options_.max_multiple)).norm());
+        if (m == 1) s.distance = apart[0];
+        if (apart.back() > options_.newton_radius * (1.0 + y.norm())) continue;
+        // A slow drift is no nearer to itself after m periods than after a part of them; a motion of multiple m is.
+        bool drifts = false;
+        for (int d = 1; d < m; ++d) drifts = drifts || (m % d == 0 && apart.back() > 0.5 * apart[static_cast<std::size_t>(d - 1)]);
+        if (drifts) continue;
+        const auto explained = [&](const Saddle& u) { return explains(u, past.col((k - m) % options_.max_multiple), y, m); };
+        if (std::any_of(saddles.begin(), saddles.end(), explained)) continue;
+        Saddle at;
+        auto a = refine(y, m, at);
+        if (a && std::abs(a->multipliers[0]) >= 1.0) saddles.push_back(std::move(at));
         if (!a || std::abs(a->multipliers[0]) >= 1.0) continue;
         const bool listed =
             known.find(*a) >= 0 || std::any_of(candidates.begin(), candidates.end(), [&](const auto& c) { return same_motion(c.first, *a); });

@@ -126,6 +126,13 @@ class AttractorFinder {
   Stroboscope& transient() { return transient_; }
 
  private:
+  struct Saddle {  // an unstable periodic motion: a point of it and the derivative of the map over its period there
+    int multiple = 0;
+    Vector point;
+    Matrix derivative;
+  };
+  std::optional<Attractor> refine(const Vector& start, int multiple, Saddle& at);
+  static bool explains(const Saddle& s, const Vector& before, const Vector& after, int periods);
   bool not_periodic(Settled& s, Vector& y);
 
   AttractorOptions options_;

@@ -40,7 +40,8 @@ FlatFlow::FlatFlow(const ModalSystem<double>& system)
   }
   for (const auto& [key, coefficient] : sums) sums_.push_back({key.first, key.second, coefficient});
   value_.resize(static_cast<std::size_t>(first_product) + products_.size());
-  slope_.assign(value_.size(), 0.0);
+  slope_.assign(value_.size() * most_lanes, 0.0);
+  sum_.assign(static_cast<std::size_t>(n_) * most_lanes, 0.0);
 }
 
 void FlatFlow::evaluate(double t, const double* y, double* dydt) const {
@@ -64,23 +65,43 @@ void FlatFlow::evaluate(double t, const double* y, double* dydt) const {
 
 void FlatFlow::operator()(double t, const double* y, double* dydt) const { evaluate(t, y, dydt); }
 
+// Tangents in groups of `lanes`, side by side in every slope: one pass over the lists serves the whole group.
+template <int lanes>
+void FlatFlow::tangent_group(const double* y, double* dydt) const {
+  const double* value = value_.data();
+  double* slope = slope_.data();
+  const int n = n_, size = 2 * n_;
+  std::fill_n(slope + n * lanes, harmonics_ * lanes, 0.0);  // of the cosines
+  for (int i = 0; i < n; ++i)
+    for (int l = 0; l < lanes; ++l) slope[i * lanes + l] = y[l * size + i];
+  double* next = slope + (n + harmonics_) * lanes;
+  for (const Product& p : products_) {
+    const double a = value[p.first], b = value[p.second], *s = slope + p.first * lanes, *t = slope + p.second * lanes;
+    for (int l = 0; l < lanes; ++l) next[l] = s[l] * b + a * t[l];
+    next += lanes;
+  }
+  double* force = sum_.data();
+  std::fill_n(force, n * lanes, 0.0);
+  for (const Sum& s : sums_) {
+    const double* t = slope + s.node * lanes;
+    double* f = force + s.equation * lanes;
+    for (int l = 0; l < lanes; ++l) f[l] += s.coefficient * t[l];
+  }
+  for (int l = 0; l < lanes; ++l)
+    for (int i = 0; i < n; ++i) {
+      const auto k = static_cast<std::size_t>(i);
+      const double* v = y + l * size;
+      dydt[l * size + i] = v[n + i];
+      dydt[l * size + n + i] = -damping_[k] * v[n + i] - stiffness_[k] * v[i] - force[i * lanes + l];
+    }
+}
+
 void FlatFlow::with_tangents(double t, const double* y, double* dydt, int tangents) const {
   evaluate(t, y, dydt);
-  const double* value = value_.data();
-  double* slope = slope_.data();  // of the cosines: zero
-  for (int m = 1; m <= tangents; ++m) {
-    const double* v = y + m * size();
-    double* d = dydt + m * size();
-    for (int i = 0; i < n_; ++i) slope[i] = v[i];
-    double* next = slope + n_ + harmonics_;
-    for (const Product& p : products_) *next++ = slope[p.first] * value[p.second] + value[p.first] * slope[p.second];
-    for (int i = 0; i < n_; ++i) {
-      const auto k = static_cast<std::size_t>(i);
-      d[i] = v[n_ + i];
-      d[n_ + i] = -damping_[k] * v[n_ + i] - stiffness_[k] * v[i];
-    }
-    for (const Sum& s : sums_) d[n_ + s.equation] -= s.coefficient * slope[s.node];
-  }
+  int m = 1;
+  for (; m + most_lanes <= tangents + 1; m += most_lanes) tangent_group<most_lanes>(y + m * size(), dydt + m * size());
+  for (; m + 2 <= tangents + 1; m += 2) tangent_group<2>(y + m * size(), dydt + m * size());
+  for (; m <= tangents; ++m) tangent_group<1>(y + m * size(), dydt + m * size());
 }
 
 }  // namespace whirl::models

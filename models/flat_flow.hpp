@@ -37,14 +37,17 @@ class FlatFlow {
     int equation, node;
     double coefficient;
   };
+  static constexpr int most_lanes = 8;
   void evaluate(double t, const double* y, double* dydt) const;
+  template <int lanes>
+  void tangent_group(const double* y, double* dydt) const;
 
   int n_, harmonics_;
   double omega_;
   std::vector<double> damping_, stiffness_, constant_;
   std::vector<Product> products_;
   std::vector<Sum> sums_;
-  mutable std::vector<double> value_, slope_;  // coordinates, cosines 1..H, products
+  mutable std::vector<double> value_, slope_, sum_;  // coordinates, cosines 1..H, products; slopes side by side, of a group of tangents
 };
 
 }  // namespace whirl::models

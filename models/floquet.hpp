@@ -8,7 +8,8 @@
 ///
 ///     z_i'' + (k_i - c_i^2/4) z_i + sum_j g_ij e^{(c_i - c_j) t/2} z_j = 0,
 ///
-/// and z is advanced by Gauss collocation with 8 nodes a step (order 16, Nystrom form, unknowns z at the nodes). g stands in tables of the nodes.
+/// and z is advanced by Gauss collocation with 8 nodes a step (order 16, floquet_block.hpp). g stands in tables of the nodes, made from the terms
+/// directly or, where they are many, from the harmonics of g.
 /// The number of steps follows from the stiffness and is raised by half until two results agree. Coordinates that g does not couple (in plane and
 /// out of plane on planar motion) are separate blocks, found from exact zeros or given. The smaller of two real multipliers of a single coordinate
 /// comes from Liouville's determinant e^{-c nu T}.
@@ -24,7 +25,7 @@
 #include <map>
 
 #include "core/problem.hpp"
-#include "models/modal_system.hpp"
+#include "models/floquet_block.hpp"
 
 namespace whirl::models {
 
@@ -63,12 +64,13 @@ struct FloquetResult {
   std::vector<std::vector<int>> blocks;  ///< coordinates of each block
   double error = 0.0;                    ///< of the monodromy matrix, from two step lengths, relative
   int steps = 0;
+  int eliminated = 0;  ///< steps that were eliminated because sweeps did not contract, of both step lengths and all blocks
   bool converged = false;
 };
 
 class Floquet {
  public:
-  static constexpr int nodes = 8;  ///< of a step
+  static constexpr int nodes = GaussNystrom::nodes;  ///< of a step
   using Blocks = std::vector<std::vector<int>>;
 
   /// `shape` gives the number of coordinates and the largest harmonic of any term.
@@ -78,26 +80,38 @@ class Floquet {
   const FloquetResult& compute(const ModalSystem<double>& system, In x, const Blocks& blocks = {});
 
  private:
-  struct Grid {  // of one number of steps
+  struct Grid {  // harmonics of theta, cos(h omega t) at some instants
     Matrix basis, cosine;
   };
+  void list_pairs(const ModalSystem<double>& shape);
+  template <class Fraction>
+  Grid fill_grid(Fraction fraction, int samples, int top) const;
   const Grid& grid(int steps);
-  void tabulate(const ModalSystem<double>& system, In x, const Grid& grid, int samples);
-  Blocks find_blocks(int samples) const;
-  void check_blocks(const Blocks& blocks, int samples) const;
-  int first_guess(const ModalSystem<double>& system, double period, int samples) const;
+  void sample(const ModalSystem<double>& system, In x, const Grid& grid);
+  void analyse();
+  void tabulate(const ModalSystem<double>& system, In x, int steps);
+  bool couples(int i, int j) const;
+  Blocks find_blocks() const;
+  void check_blocks(const Blocks& blocks) const;
+  int first_guess(const ModalSystem<double>& system, double period) const;
   void integrate(const ModalSystem<double>& system, double period, int steps, MatrixOut monodromy);
-  template <int fixed>
-  void integrate_block(const ModalSystem<double>& system, const std::vector<int>& block, double h, int steps, MatrixOut monodromy);
   void collect(const ModalSystem<double>& system, double period);
 
   FloquetOptions options_;
   int n_, harmonics_, nu_, max_harmonic_;
-  std::array<double, nodes> c_{}, b_{}, bbar_{};         // nodes and weights of a unit step for z', z
-  std::array<std::array<double, nodes>, nodes> abar_{};  // z at the nodes from z'' at the nodes
-  std::map<int, Grid> grids_;
-  Matrix q_, coarse_, fine_;
-  std::vector<double> g_, product_, work_, stiffness_, state_;
+  std::size_t terms_ = 0;
+  int pairs_ = 0;
+  std::vector<int> place_;  // column of g of pair (i, j) at i N + j, -1: no term couples them
+  GaussNystrom gauss_;
+  FloquetBlock steps_of_block_;
+  std::map<int, Grid> grids_;  // at the nodes of so many steps
+  Matrix q_, g_, coarse_, fine_;
+  std::vector<double> product_;
+  // Where the terms are many: g sampled at as few even instants as its harmonics need, and from the harmonics at the nodes.
+  Grid even_;
+  Matrix analysis_, compact_, gamma_;  // empty: the terms are sampled at the nodes themselves
+  std::vector<int> coupled_;
+  int kept_ = 0;  // rows of gamma_ that are not rounding
   FloquetResult result_;
 };
 

@@ -46,6 +46,47 @@ double largest_exponent(const ModalSystem<double>& system, const Vector& start, 
   return sum / ((o.lyapunov_periods - skip) * period);
 }
 
+// Largest distances of m periods in the middle and at the end of a run: does the motion last?
+class Lasting {
+ public:
+  Lasting(int periods, int multiples)
+      : middle_(periods / 2),
+        window_(std::max(1, periods / 8)),
+        last_(periods - window_),
+        early_(static_cast<std::size_t>(multiples) + 1, 0.0),
+        late_(early_) {}
+  void see(int k, int m, double distance) {
+    const auto slot = static_cast<std::size_t>(m);
+    if (k > middle_ && k <= middle_ + window_) early_[slot] = std::max(early_[slot], distance);
+    if (k > last_) late_[slot] = std::max(late_[slot], distance);
+  }
+  /// m that comes nearest to itself in the end; 0 if the run was too short to tell.
+  int nearest() const {
+    if (window_ < 8) return 0;
+    return static_cast<int>(std::min_element(late_.begin() + 1, late_.end()) - late_.begin());
+  }
+  double ratio(int m) const { return late_[static_cast<std::size_t>(m)] / early_[static_cast<std::size_t>(m)]; }
+  int apart() const { return last_ - middle_; }  ///< periods between the two
+
+ private:
+  int middle_, window_, last_;
+  std::vector<double> early_, late_;
+};
+
+constexpr double lasts_within = 0.03;
+
+// True if distances changed between middle and end of the run: then that is what is known, not what the motion will be.
+bool still_changing(const Lasting& lasting, double period, SteadyMotion& motion) {
+  const int m = lasting.nearest();
+  if (m == 0 || !std::isfinite(lasting.ratio(m)) || std::abs(lasting.ratio(m) - 1.0) <= lasts_within) return false;
+  motion.decay_rate = -std::log(lasting.ratio(m)) / (lasting.apart() * period);
+  const double half_life = std::log(2.0) / (std::abs(motion.decay_rate) * period);
+  motion.why = fmt::format("still {} after {} periods: the change over {} period{} {} in some {:.0f} periods",
+                           motion.decay_rate > 0.0 ? "decaying" : "growing", motion.periods_integrated, m, m == 1 ? "" : "s",
+                           motion.decay_rate > 0.0 ? "halves" : "doubles", half_life);
+  return true;
+}
+
 }  // namespace
 
 const char* to_string(MotionKind kind) {
@@ -100,6 +141,7 @@ SteadyMotion settle(const ModalSystem<double>& system, const Vector& y0, const S
   std::deque<Vector> past{y0};  // stroboscopic points, newest first
   std::vector<double> last(static_cast<std::size_t>(o.max_multiple) + 1, 0.0);
   std::vector<int> calm(last.size(), 0);
+  Lasting lasting(o.max_periods, o.max_multiple);
   for (int k = 1; k <= o.max_periods && motion.multiple == 0; ++k) {
     if (o.interrupted && *o.interrupted) break;
     if (!run.advance(k * period)) {
@@ -118,6 +160,7 @@ SteadyMotion settle(const ModalSystem<double>& system, const Vector& y0, const S
       const double rate = last[slot] > 0.0 ? std::min(e / last[slot], 0.9999) : 0.9999;
       const double left = e / (1.0 - std::pow(rate, m));
       last[slot] = e;
+      lasting.see(k, m, e);
       calm[slot] = left < limit || e < 1e-3 * limit ? calm[slot] + 1 : 0;
       // Of an m that is calm, a divisor nearly so may be the true period that only settles more slowly: wait for it.
       bool shorter = false;
@@ -138,12 +181,14 @@ SteadyMotion settle(const ModalSystem<double>& system, const Vector& y0, const S
     motion.distance = last[1];
     motion.kind = MotionKind::unsettled;
     const bool interrupted = o.interrupted && *o.interrupted;
-    if (o.lyapunov_periods > 0 && !interrupted) {
+    if (interrupted) motion.why = "interrupted";
+    else if (!still_changing(lasting, period, motion) && o.lyapunov_periods > 0) {
       motion.lyapunov = largest_exponent(system, motion.state, o);
       // A tangent vector along a torus neither grows nor shrinks; over N periods the estimate is good to about ln(N)/N.
       const double resolution = std::log(static_cast<double>(o.lyapunov_periods)) / (o.lyapunov_periods * period);
       if (motion.lyapunov > resolution) motion.kind = MotionKind::chaotic;
       else if (motion.lyapunov > -resolution) motion.kind = MotionKind::quasi_periodic;
+      else motion.why = fmt::format("not settled after {} periods, largest Lyapunov exponent {:.2g} 1/s", motion.periods_integrated, motion.lyapunov);
     }
   }
   motion.record_periods = motion.multiple > 0 ? motion.multiple : o.record_periods;

@@ -2,8 +2,12 @@
 /// Where a forced modal system settles: time integration with CVODE to the steady motion, and what kind of motion that is.
 ///
 /// The stroboscopic map x(t) -> x(t + T), T = 2 pi/omega, is iterated until x(t + m T) = x(t) for the smallest m <= max_multiple, the distance still
-/// to go estimated from the rate at which successive distances shrink. What does not settle within max_periods is told apart by the largest Lyapunov
-/// exponent: about zero quasi-periodic, positive chaotic.
+/// to go estimated from the rate at which successive distances shrink. Of what does not settle within max_periods, distances |x(t + m T) - x(t)| are
+/// compared, the largest of an eighth of max_periods in the middle with that of the last eighth, for the m that comes nearest to itself:
+///
+///     they fall (or grow) by more than 3 %      unsettled; `decay_rate` is measured, `why` says it
+///     they last, largest Lyapunov exponent > 0  chaotic
+///     they last, exponent zero                  quasi-periodic, as far as can be told: a decay of less than 3 % over all those periods looks alike
 ///
 ///     SteadyMotion m = settle(system, y0, {.max_periods = 2000});      // y0 = (q, q') at omega t = 0
 ///     m.harmonic(0, 2.0)                                                // amplitude and phase of cos(2 omega t + phase) in q1
@@ -35,13 +39,14 @@ struct SteadyMotion {
   MotionKind kind = MotionKind::failed;
   int multiple = 0;  ///< m, in excitation periods; 0 if not periodic
   int periods_integrated = 0;
-  double distance = 0.0;  ///< last stroboscopic distance |x(t + m T) - x(t)|
-  double lyapunov = 0.0;  ///< largest exponent [1/s], where computed
+  double distance = 0.0;    ///< last stroboscopic distance |x(t + m T) - x(t)|
+  double lyapunov = 0.0;    ///< largest exponent [1/s], where computed
+  double decay_rate = 0.0;  ///< of stroboscopic distances that shrink still [1/s], where unsettled; negative where they grow
   double omega = 0.0;
   Vector state;   ///< stroboscopic point at omega t = 0 (mod 2 pi), size 2 n
   Matrix record;  ///< 2 n x samples of the motion after settling, first column at omega t = 0
   int record_periods = 0;
-  std::string why;  ///< if failed
+  std::string why;  ///< if failed or unsettled
 
   /// Complex amplitude Q e^{i phase} of Q cos(k omega t + phase) in coordinate i; k may be a fraction. A mean for k = 0.
   std::complex<double> harmonic(int i, double k) const;

@@ -42,6 +42,9 @@ class Sweeper {
     return true;
   }
   static bool at_rest(const SweepPoint& a, Eigen::Index i) { return a.rms[i] < 1e-5 * (1e-3 + a.rms.maxCoeff()); }
+  std::string name_of_coordinate(Eigen::Index i) const {
+    return static_cast<std::size_t>(i) < o_.names.size() ? o_.names[static_cast<std::size_t>(i)] : fmt::format("q{}", i + 1);
+  }
   static double apart(const SweepPoint& a, const SweepPoint& b) {
     return (a.rms - b.rms).norm() / std::max({a.rms.maxCoeff(), b.rms.maxCoeff(), 1e-300});
   }
@@ -67,7 +70,7 @@ class Sweeper {
     const std::string from = name_of(a.settled.kind, a.motion.multiple), to = name_of(b.settled.kind, b.motion.multiple);
     t.what += from == to ? ", " + from : fmt::format(", {} -> {}", from, to);
     for (Eigen::Index i = 0; i < a.rms.size() && !ended(b); ++i)
-      if (at_rest(a, i) != at_rest(b, i)) t.what += fmt::format(", q{} {}", i + 1, at_rest(a, i) ? "starts" : "stops");
+      if (at_rest(a, i) != at_rest(b, i)) t.what += fmt::format(", {} {}", name_of_coordinate(i), at_rest(a, i) ? "starts" : "stops");
     return t;
   }
 

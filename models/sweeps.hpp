@@ -21,6 +21,7 @@ struct SweepOptions {
   double perturbation = 1e-4;      ///< added to coordinates at rest before each value: an invariant subspace is left where it repels
   int samples = 64, periods = 32;  ///< recorded motion, per period; periods where it has none
   AttractorOptions settle;
+  std::vector<std::string> names = {};          ///< of the coordinates in `SweepTransition::what`; q1, q2, ... without
   std::function<bool(double p)> observer = {};  ///< before each value; false ends the sweep
   void validate() const;
 };

@@ -26,8 +26,11 @@ def level_of(branch):
     return str(branch.attributes.get("level", "exact"))
 
 
-def amplitude_columns(branch):
-    return [c for c in branch.columns if c.startswith("q") and "_h" in c and not c.endswith("_phase")][:COORDINATES]
+def amplitude_columns(branches):
+    """Amplitudes at n omega of the coordinates (q1, y1, z1, ...) that move most on any branch, in the order of the file."""
+    every = [c for c in branches[0].columns if c[0] in "qyz" and "_h" in c and not c.endswith("_phase")]
+    foremost = sorted(every, key=lambda c: max(np.nanmax(b.column(c), initial=0.0) for b in branches), reverse=True)[:COORDINATES]
+    return [c for c in every if c in foremost]
 
 
 # --- response --------------------------------------------------------------------------------------------------------------
@@ -37,7 +40,7 @@ def response(result):
     if not names:
         return None
     branches = [result.group("branches").group(n) for n in names]
-    columns = amplitude_columns(branches[0])
+    columns = amplitude_columns(branches)
     order = columns[0].split("_h")[1]
     levels = [k for k in LEVELS if any(level_of(b) == k for b in branches)]
     keys = [line_key(LEVELS[k][2], color=LEVELS[k][0], linewidth=LEVELS[k][1]) for k in levels]
@@ -56,7 +59,7 @@ def response(result):
                       markerfacecolor="none", markeredgewidth=0.9, zorder=5)
         q = column.split("_")[0]
         words = f", {WORDS[q]}" if q in WORDS and result.group("cable") else ""
-        axes.set_ylabel(label(rf"$|q_{{{q[1:]}}}|$ at {order}$\omega$", branches[0].units[column]) + words)
+        axes.set_ylabel(label(rf"$|{q[0]}_{{{q[1:]}}}|$ at {order}$\omega$", branches[0].units[column]) + words)
         axes.grid(True, color="#ececec", linewidth=0.6)
         axes.set_axisbelow(True)
     panels[-1].set_xlabel(label(SYMBOLS["omega"], "rad/s"))

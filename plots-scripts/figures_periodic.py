@@ -22,6 +22,13 @@ def coordinates(branch):
     return [c[:-4] for c in branch.columns if c.endswith("_max") and c != "tension_max"]
 
 
+def leading(result, names, most):
+    """The coordinates that move most on any branch, in the order of the file."""
+    every = coordinates(result.group("branches").group(names[0]))
+    foremost = sorted(every, key=lambda q: largest(result, names, f"{q}_max"), reverse=True)[:most]
+    return [q for q in every if q in foremost]
+
+
 def harmonics_of(branch, coordinate):
     """Multiples of omega of which the file has amplitudes."""
     names = [c[len(coordinate) + 2:] for c in branch.columns if c.startswith(coordinate + "_h") and not c.endswith("_phase")]
@@ -72,7 +79,7 @@ def response(result):
     names, first = first_branch(result)
     if not names:
         return None
-    shown = coordinates(first)[:COORDINATES]
+    shown = leading(result, names, COORDINATES)
     x, columns = parameter_of(result, first), [f"{q}_max" for q in shown]
     points = special_points(result, [x, *columns])
     colours, keys = page_keys(result, names, points)
@@ -92,7 +99,7 @@ def harmonics(result):
     names, first = first_branch(result)
     if not names:
         return None
-    shown = coordinates(first)[:COORDINATES]
+    shown = leading(result, names, COORDINATES)
     x = parameter_of(result, first)
     size = {k: max(largest(result, names, column(q, k)) for q in shown) for k in harmonics_of(first, shown[0])}
     chosen = sorted(sorted(size, key=size.get, reverse=True)[:HARMONICS])
@@ -164,7 +171,7 @@ def orbits(result):
     names, first = first_branch(result)
     if not motions or not names or len(coordinates(first)) < 2:
         return None
-    a, b = coordinates(first)[:2]
+    a, b = leading(result, names, 2)
     values = sorted({float(m.attributes["omega"]) for m in motions})
     columns = min(len(values), 3)
     rows = -(-len(values) // columns)

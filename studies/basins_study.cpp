@@ -26,10 +26,11 @@ Schema schema() {
          .lower = 0.0,
          .example = Value{2.15}});
   s.add({.name = "basins.axes",
-         .description = "the two states that vary, such as q1, q2, q1', q2'",
-         .default_value = std::vector<std::string>{"q1", "q2"},
-         .min_items = 2,
-         .max_items = 2});
+         .description = "the two states that vary, such as q1, q2, q1', q2'; left out: the first coordinates out of plane and in plane, or the "
+                        "only coordinate and its velocity",
+         .default_value = std::vector<std::string>{},
+         .max_items = 2,
+         .example = Value{std::vector<std::string>{"q1", "q2"}}});
   for (const char* axis : {"x", "y"})
     s.add({.name = fmt::format("basins.{}_range", axis),
            .description = fmt::format("ends of the {} axis, both among the starts", axis == std::string("x") ? "first" : "second"),
@@ -85,7 +86,11 @@ struct Setup {
 
 BasinAxis axis_of(const Configuration& c, const ForcedSystem& s, std::size_t k) {
   const auto names = state_names(s);
-  const std::string& name = c.texts("basins.axes")[k];
+  const auto leading = leading_coordinates(s);
+  const auto& given = c.texts("basins.axes");
+  if (given.size() == 1) throw c.error("basins.axes", "must name two states");
+  const int usual = leading[k] + (k == 1 && leading[0] == leading[1] ? static_cast<int>(s.coordinates.size()) : 0);
+  const std::string name = given.empty() ? names[static_cast<std::size_t>(usual)] : given[k];
   const auto at = std::find(names.begin(), names.end(), name);
   if (at == names.end()) {
     std::string all;
@@ -229,7 +234,7 @@ ExitStatus run(const Configuration& c, RunContext& context) {
     fmt::print(stderr, "{} starts, {} integrated in {:.1f} s ({:.0f} per second); {} checked again, {} of them went elsewhere\n", map.cell.size(),
                map.integrated, seconds, static_cast<double>(map.integrated) / seconds, map.checked, map.disagreed);
   }
-  return finish_integration(file, context, unsettled == 0 && !rows.empty());
+  return finish(file, context, unsettled == 0 && !rows.empty() ? ExitStatus::ok : ExitStatus::numerical_failure);
 }
 
 }  // namespace

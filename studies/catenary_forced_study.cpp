@@ -53,26 +53,14 @@ Schema schema() {
          .min_items = 2,
          .max_items = 2,
          .example = Value{std::vector<double>{0.0, 4.0}}});
-  s.add({.name = "response.points",
-         .description = "evenly spaced frequencies; more are set about the natural ones",
-         .default_value = std::int64_t{400},
-         .lower = 2,
-         .upper = 1e6,
-         .closed_lower = true,
-         .closed_upper = true});
+  s.add_count("response.points", "evenly spaced frequencies; more are set about the natural ones", 400, 2, 1e6);
   s.add({.name = "response.at",
          .unit = "rad/s",
          .description = "frequencies at which the motion along the cable is written",
          .default_value = std::vector<double>{},
          .lower = 0.0,
          .closed_lower = true});
-  s.add({.name = "response.cable_points",
-         .description = "points along the cable in these tables",
-         .default_value = std::int64_t{201},
-         .lower = 2,
-         .upper = 100000,
-         .closed_lower = true,
-         .closed_upper = true});
+  s.add_count("response.cable_points", "points along the cable in these tables", 201, 2, 100000);
   return s;
 }
 

@@ -1,5 +1,7 @@
 #include "studies/catenary_keys.hpp"
 
+#include "studies/common_keys.hpp"
+
 #include <fmt/format.h>
 
 #include <cmath>
@@ -148,14 +150,8 @@ Along along(const HangingCable& cable, int points) {
 }
 
 ExitStatus finish_tables(ResultFile& file, RunContext& context, const std::vector<std::string>& failures) {
-  ExitStatus status = failures.empty() ? ExitStatus::ok : ExitStatus::numerical_failure;
   for (const auto& f : failures) context.warn(f);
-  if (interrupted) status = ExitStatus::stopped_by_user;
-  file.attribute("/study", "stop_reasons", failures);
-  file.attribute("/study", "warnings", context.warnings);
-  file.attribute("/study", "outcome", std::string(interrupted ? "interrupted" : failures.empty() ? "complete" : "partial"));
-  file.flush();
-  return status;
+  return finish(file, context, failures.empty() ? ExitStatus::ok : ExitStatus::numerical_failure, failures);
 }
 
 }  // namespace whirl::studies

@@ -25,13 +25,7 @@ Schema schema() {
   };
   count("modes.in_plane", "modes wanted in plane", 8);
   count("modes.out_of_plane", "modes wanted out of plane", 8);
-  s.add({.name = "modes.points",
-         .description = "points along the cable at which shapes are written; 0: no shapes",
-         .default_value = std::int64_t{201},
-         .lower = 0,
-         .upper = 100000,
-         .closed_lower = true,
-         .closed_upper = true});
+  s.add_count("modes.points", "points along the cable at which shapes are written; 0: no shapes", 201, 0, 100000);
   s.add({.name = "series.compare",
          .description = "solve again by the source's series, inextensible cable with |xi| < 4 at both ends, and compare",
          .default_value = false});
@@ -49,13 +43,7 @@ Schema schema() {
          .upper = 100.0,
          .closed_lower = true,
          .example = Value{std::vector<double>{0.0, 0.5}}});
-  s.add({.name = "sweep.points",
-         .description = "cables of each sweep",
-         .default_value = std::int64_t{60},
-         .lower = 2,
-         .upper = 100000,
-         .closed_lower = true,
-         .closed_upper = true});
+  s.add_count("sweep.points", "cables of each sweep", 60, 2, 100000);
   return s;
 }
 

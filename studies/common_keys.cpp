@@ -57,20 +57,8 @@ void add_continuation_keys(Schema& s, const std::string& default_parameter) {
          .lower = 0.0,
          .upper = 1e-3,
          .closed_upper = true});
-  s.add({.name = "continuation.max_points",
-         .description = "of one branch in one direction",
-         .default_value = std::int64_t{4000},
-         .lower = 2,
-         .upper = 1e7,
-         .closed_lower = true,
-         .closed_upper = true});
-  s.add({.name = "continuation.depth",
-         .description = "generations of branches followed at branch points; 0: none",
-         .default_value = std::int64_t{2},
-         .lower = 0,
-         .upper = 100,
-         .closed_lower = true,
-         .closed_upper = true});
+  s.add_count("continuation.max_points", "of one branch in one direction", 4000, 2, 1e7);
+  s.add_count("continuation.depth", "generations of branches followed at branch points; 0: none", 2, 0, 100);
   s.add(
       {.name = "continuation.user_values", .description = "parameter values to hit exactly, reported as UZ", .default_value = std::vector<double>{}});
 }
@@ -110,13 +98,7 @@ void add_verification_keys(Schema& s) {
          .default_value = 1e-12,
          .lower = 0.0,
          .upper = 1.0});
-  s.add({.name = "verification.sweep_points",
-         .description = "frequencies of the sweeps up and down over continuation.range; 0: no sweeps",
-         .default_value = std::int64_t{0},
-         .lower = 0,
-         .upper = 100000,
-         .closed_lower = true,
-         .closed_upper = true});
+  s.add_count("verification.sweep_points", "frequencies of the sweeps up and down over continuation.range; 0: no sweeps", 0, 0, 100000);
 }
 
 StayParameters<double> stay_of(const Configuration& c) {
@@ -267,6 +249,10 @@ ExitStatus finish(ResultFile& file, RunContext& context, const std::vector<conti
     warn_of_unresolved(b, context);
   }
   if (branches.empty()) status = ExitStatus::numerical_failure;
+  return finish(file, context, status, reasons);
+}
+
+ExitStatus finish(ResultFile& file, const RunContext& context, ExitStatus status, const std::vector<std::string>& reasons) {
   if (interrupted) status = ExitStatus::stopped_by_user;
   file.attribute("/study", "stop_reasons", reasons);
   file.attribute("/study", "warnings", context.warnings);

@@ -36,5 +36,7 @@ void write_study(ResultFile& file, const Configuration& c);
 void write_cable_numbers(ResultFile& file, const models::Cable<double>& cable);
 /// Warnings and stop reasons into /study; the exit status they amount to.
 ExitStatus finish(ResultFile& file, RunContext& context, const std::vector<continuation::Branch>& branches);
+/// The same where the outcome is known: `status`, or that the user stopped the run, with the reasons that stopped its parts.
+ExitStatus finish(ResultFile& file, const RunContext& context, ExitStatus status, const std::vector<std::string>& reasons = {});
 
 }  // namespace whirl::studies

@@ -196,6 +196,19 @@ std::vector<Match> match_points(const Levels& levels, double reach) {
   return matches;
 }
 
+namespace {
+
+// Those that whirling moves; the first where no reflection tells.
+std::vector<int> coordinates_out_of_plane(const ForcedSystem& s) {
+  std::vector<int> odd;
+  for (const auto& r : s.reflections)
+    for (std::size_t i = 0; r.subtype == "WH" && i < r.signs.size(); ++i)
+      if (r.signs[i] < 0) odd.push_back(static_cast<int>(i));
+  return odd.empty() ? std::vector<int>{0} : odd;
+}
+
+}  // namespace
+
 CellError error_at(const Levels& levels, double p) {
   const int order = levels.options.order;
   const AveragedLevel& level = levels.frozen;
@@ -205,8 +218,10 @@ CellError error_at(const Levels& levels, double p) {
   for (const auto& motion : levels.exact->motions_at(p))
     if (motion.stable) exact.push_back(levels.exact_amplitudes(motion.u));
   CellError cell{std::nan(""), 0.0, false};
-  const auto moving = [](const std::vector<Amplitudes>& all) {
-    return std::count_if(all.begin(), all.end(), [](const auto& z) { return z[0] > 1e-9; });
+  const auto out_of_plane = coordinates_out_of_plane(levels.exact->source());
+  const auto moving = [&](const std::vector<Amplitudes>& all) {
+    return std::count_if(all.begin(), all.end(),
+                         [&](const auto& z) { return std::any_of(out_of_plane.begin(), out_of_plane.end(), [&](int i) { return z[i] > 1e-9; }); });
   };
   cell.same_kinds = averaged.size() == exact.size() && moving(averaged) == moving(exact);
   for (const auto& z : exact) {

@@ -31,24 +31,15 @@ Schema schema() {
   Schema s("compare", "averaged, exact and integrated motions side by side: special points matched, and how far the averaged curve can be trusted");
   add_forced_system_keys(s);
   add_continuation_keys(s, "omega");
-  const auto count = [&](const std::string& name, const std::string& description, std::int64_t value, double lower, double upper) {
-    s.add({.name = name,
-           .description = description,
-           .default_value = value,
-           .lower = lower,
-           .upper = upper,
-           .closed_lower = true,
-           .closed_upper = true});
-  };
-  count("response.order", "superharmonic order n: amplitudes of n omega are compared", 2, 1, 50);
-  count("compare.harmonics", "harmonics 0..H of the complete ansatz", 8, 1, 60);
+  s.add_count("response.order", "superharmonic order n: amplitudes of n omega are compared", 2, 1, 50);
+  s.add_count("compare.harmonics", "harmonics 0..H of the complete ansatz", 8, 1, 60);
   s.add({.name = "compare.tolerance",
          .description = "relative error up to which the averaged amplitude counts as trustworthy",
          .default_value = 0.1,
          .lower = 0.0,
          .upper = 10.0});
-  count("seeds.grid", "frequencies at which motions of one level start branches of another", 13, 1, 10000);
-  count("sweep.points", "frequencies of the integrated sweeps up and down; 0: none", 61, 0, 100000);
+  s.add_count("seeds.grid", "frequencies at which motions of one level start branches of another", 13, 1, 10000);
+  s.add_count("sweep.points", "frequencies of the integrated sweeps up and down; 0: none", 61, 0, 100000);
   s.add({.name = "sweep.tolerance",
          .unit = "rad/s",
          .description = "width to which an integrated jump is bisected",
@@ -57,7 +48,7 @@ Schema schema() {
          .upper = 1.0});
   s.add({.name = "map.parameter", .description = "second parameter of the map of errors", .default_value = std::string("support_motion.amplitude")});
   s.add({.name = "map.values", .description = "its values, rising; empty: no map", .default_value = std::vector<double>{}});
-  count("map.points", "frequencies of the map", 41, 2, 100000);
+  s.add_count("map.points", "frequencies of the map", 41, 2, 100000);
   return s;
 }
 

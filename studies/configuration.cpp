@@ -299,6 +299,16 @@ Schema& Schema::add(Key key) {
   return *this;
 }
 
+Schema& Schema::add_count(std::string name, std::string description, std::int64_t value, double lower, double upper) {
+  return add({.name = std::move(name),
+              .description = std::move(description),
+              .default_value = value,
+              .lower = lower,
+              .upper = upper,
+              .closed_lower = true,
+              .closed_upper = true});
+}
+
 Schema& Schema::add_free(FreeSection section) {
   if (find_free(section.name)) throw std::invalid_argument(fmt::format("{}: section {} added twice", kind_, section.name));
   free_sections_.push_back(std::move(section));

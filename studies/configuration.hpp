@@ -80,6 +80,8 @@ class Schema {
 
   /// Throws std::invalid_argument for a repeated name or a default outside the key's own range.
   Schema& add(Key key);
+  /// A whole number from `lower` to `upper`, both among the values.
+  Schema& add_count(std::string name, std::string description, std::int64_t value, double lower, double upper);
   Schema& add_free(FreeSection section);
   /// Where a free section of it is present, keys of its sections are refused, have no value and are not required.
   Schema& add_alternative(Alternative alternative);

@@ -197,13 +197,7 @@ class ExpressionSource : public EquilibriumSource {
 
 void add_equilibrium_source_keys(Schema& s) {
   add_stay_keys(s);
-  s.add({.name = "response.order",
-         .description = "superharmonic order n",
-         .default_value = std::int64_t{2},
-         .lower = 2,
-         .upper = 50,
-         .closed_lower = true,
-         .closed_upper = true});
+  s.add_count("response.order", "superharmonic order n", 2, 2, 50);
   s.add_free(equilibrium_model_section());
   s.add_alternative({.sections = {"cable", "model", "damping", "support_motion", "response"}, .free_sections = {"equilibrium_model"}});
 }

@@ -47,9 +47,24 @@ ForcedSystem forced_system_of(const Configuration& c, const std::vector<std::str
       throw InputError(fmt::format("{}: parameter '{}': {}", c.source(), name,
                                    guess.empty() ? e.what() : fmt::format("no such parameter, did you mean {}?", guess)));
     }
-  if (is_plain_stay(c)) return {stay_system(stay_of(c), chosen, terms_of(c), coefficients_of(c)), {{{-1, 1}, "WH"}}, {"q1", "q2"}, "m", units};
   const CableModel model = cable_model_of(c);
-  return {cable_system(model, chosen), cable_reflections(model), coordinate_names(c), "m", units};
+  const auto tension = [model, chosen](In p) -> ForcedSystem::Tension {
+    CableModel here = model;
+    for (std::size_t i = 0; i < chosen.size(); ++i) chosen[i].set(here.stay, p[static_cast<Eigen::Index>(i)]);
+    return CableTension(here);
+  };
+  if (is_plain_stay(c))
+    return {stay_system(stay_of(c), chosen, terms_of(c), coefficients_of(c)), {{{-1, 1}, "WH"}}, {"q1", "q2"}, "m", units, tension};
+  return {cable_system(model, chosen), cable_reflections(model), coordinate_names(c), "m", units, tension};
+}
+
+std::array<int, 2> leading_coordinates(const ForcedSystem& s) {
+  const int n = static_cast<int>(s.coordinates.size());
+  for (const auto& r : s.reflections) {
+    const auto out = std::find(r.signs.begin(), r.signs.end(), -1), in = std::find(r.signs.begin(), r.signs.end(), 1);
+    if (out != r.signs.end() && in != r.signs.end()) return {static_cast<int>(out - r.signs.begin()), static_cast<int>(in - r.signs.begin())};
+  }
+  return {0, std::min(1, n - 1)};
 }
 
 void check_forced_lens(const Configuration& c, const std::string& key, const std::string& lens, const std::string& range_key, double lower,

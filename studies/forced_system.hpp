@@ -18,9 +18,15 @@ struct ForcedSystem {
   std::vector<std::string> coordinates;                   ///< "q1", "q2", ...
   std::string length_unit;                                ///< of the coordinates: "m", or "-" for a model without units
   std::vector<std::string> lens_units;                    ///< of the parameters of `system`
+  /// Of a cable at the parameters p: its tension averaged along the chord [N] at coordinates q and phase omega t. Empty for a model without one.
+  using Tension = std::function<double(In q, double phase)>;
+  std::function<Tension(In p)> tension = {};
 
   models::ModalSystem<double> at(In p) const;  ///< with the parameters at p
 };
+
+/// The two coordinates that show a motion best: the first out of plane and the first in plane, or the first two; twice the only one.
+std::array<int, 2> leading_coordinates(const ForcedSystem& s);
 
 /// [cable], [model], [damping], [support_motion], or [modal_model] in their place; omega.
 void add_forced_system_keys(Schema& schema);

@@ -184,13 +184,4 @@ std::vector<std::string> guy_warnings(const GuyInput& in) {
   return warnings;
 }
 
-ExitStatus finish_guy(ResultFile& file, RunContext& context, ExitStatus status, const std::vector<std::string>& reasons) {
-  if (interrupted) status = ExitStatus::stopped_by_user;
-  file.attribute("/study", "stop_reasons", reasons);
-  file.attribute("/study", "warnings", context.warnings);
-  file.attribute("/study", "outcome", std::string(status == ExitStatus::ok ? "complete" : interrupted ? "interrupted" : "partial"));
-  file.flush();
-  return status;
-}
-
 }  // namespace whirl::studies

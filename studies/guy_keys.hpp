@@ -61,7 +61,4 @@ std::string guy_json(const GuyInput& guy);
 /// Warnings about what the input means, for `whirl check` and the file.
 std::vector<std::string> guy_warnings(const GuyInput& guy);
 
-/// Stop reason, warnings and outcome into /study; closes the run.
-ExitStatus finish_guy(ResultFile& file, RunContext& context, ExitStatus status, const std::vector<std::string>& reasons);
-
 }  // namespace whirl::studies

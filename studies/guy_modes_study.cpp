@@ -21,33 +21,15 @@ using std::numbers::pi;
 Schema schema() {
   Schema s("guy-modes", "modes of a guy held at both ends: transverse with linear tension, the string's, and those of the full linear problem");
   add_guy_keys(s);
-  s.add({.name = "modes.count",
-         .description = "how many of each kind",
-         .default_value = std::int64_t{8},
-         .lower = 1,
-         .upper = 100,
-         .closed_lower = true,
-         .closed_upper = true});
-  s.add({.name = "modes.shape_points",
-         .description = "points along the guy at which shapes are written",
-         .default_value = std::int64_t{201},
-         .lower = 3,
-         .upper = 100001,
-         .closed_lower = true,
-         .closed_upper = true});
+  s.add_count("modes.count", "how many of each kind", 8, 1, 100);
+  s.add_count("modes.shape_points", "points along the guy at which shapes are written", 201, 3, 100001);
   s.add({.name = "scan.tension_range",
          .unit = "N",
          .description = "horizontal tensions over which the frequencies are followed; empty: none",
          .default_value = std::vector<double>{},
          .lower = 0.0,
          .max_items = 2});
-  s.add({.name = "scan.points",
-         .description = "tensions of the scan, equally spaced in their logarithm",
-         .default_value = std::int64_t{121},
-         .lower = 2,
-         .upper = 10000,
-         .closed_lower = true,
-         .closed_upper = true});
+  s.add_count("scan.points", "tensions of the scan, equally spaced in their logarithm", 121, 2, 10000);
   return s;
 }
 
@@ -232,8 +214,8 @@ ExitStatus run(const Configuration& c, RunContext& context) {
     fmt::print("{{\n  \"special_points\": [],\n  \"branches\": [],\n  \"guy\": {},\n  \"modes\": [{}\n  ]\n}}\n", guy_json(s.guy),
                table(s, full, true));
   if (!context.quiet) fmt::print(stderr, "{}\n{}", guy_text(s.guy), table(s, full, false));
-  return finish_guy(file, context, complete ? ExitStatus::ok : ExitStatus::numerical_failure,
-                    {complete ? "all modes found; an independent count agrees" : "a mode is missing"});
+  return finish(file, context, complete ? ExitStatus::ok : ExitStatus::numerical_failure,
+                {complete ? "all modes found; an independent count agrees" : "a mode is missing"});
 }
 
 }  // namespace

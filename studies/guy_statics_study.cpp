@@ -34,20 +34,8 @@ Schema schema() {
          .default_value = std::vector<double>{-1.0, 1.0},
          .min_items = 2,
          .max_items = 2});
-  s.add({.name = "curve.points",
-         .description = "of the curve",
-         .default_value = std::int64_t{161},
-         .lower = 2,
-         .upper = 100000,
-         .closed_lower = true,
-         .closed_upper = true});
-  s.add({.name = "group.guys",
-         .description = "equal guys, equally spread, that hold one point of the mast; 0: none",
-         .default_value = std::int64_t{0},
-         .lower = 0,
-         .upper = 100,
-         .closed_lower = true,
-         .closed_upper = true});
+  s.add_count("curve.points", "of the curve", 161, 2, 100000);
+  s.add_count("group.guys", "equal guys, equally spread, that hold one point of the mast; 0: none", 0, 0, 100);
   s.add({.name = "group.azimuths_deg",
          .unit = "deg",
          .description = "or their azimuths from the mast to the anchors",
@@ -65,20 +53,8 @@ Schema schema() {
          .default_value = std::vector<double>{-1.0, 1.0},
          .min_items = 2,
          .max_items = 2});
-  s.add({.name = "group.points",
-         .description = "of a curve",
-         .default_value = std::int64_t{81},
-         .lower = 2,
-         .upper = 100000,
-         .closed_lower = true,
-         .closed_upper = true});
-  s.add({.name = "lumped.masses",
-         .description = "masses of the chains; 0: none",
-         .default_value = std::int64_t{5},
-         .lower = 0,
-         .upper = 10000,
-         .closed_lower = true,
-         .closed_upper = true});
+  s.add_count("group.points", "of a curve", 81, 2, 100000);
+  s.add_count("lumped.masses", "masses of the chains; 0: none", 5, 0, 10000);
   s.add({.name = "lumped.extra_weights",
          .unit = "N",
          .description = "hung on the masses of the hung chain, from the anchor up",
@@ -212,7 +188,7 @@ ExitStatus run(const Configuration& c, RunContext& context) {
   }
   if (context.json) fmt::print("{{\n  \"special_points\": [],\n  \"branches\": [],\n  \"guy\": {}\n}}\n", guy_json(s.guy));
   if (!context.quiet) fmt::print(stderr, "{}", guy_text(s.guy));
-  return finish_guy(file, context, status, reasons);
+  return finish(file, context, status, reasons);
 }
 
 }  // namespace

@@ -28,13 +28,7 @@ Schema schema() {
          .min_items = 2,
          .max_items = 2,
          .example = Value{std::vector<double>{0.02, 9.0}}});
-  s.add({.name = "stiffness.points",
-         .description = "frequencies",
-         .default_value = std::int64_t{2000},
-         .lower = 2,
-         .upper = 1e6,
-         .closed_lower = true,
-         .closed_upper = true});
+  s.add_count("stiffness.points", "frequencies", 2000, 2, 1e6);
   s.add({.name = "stiffness.closed_forms",
          .description = "closed forms of the horizontal modulus to compare with",
          .default_value = std::vector<std::string>{"classical", "completed", "sarvi", "sarvi-modal"},
@@ -45,20 +39,8 @@ Schema schema() {
          .lower = 0.0,
          .upper = 10.0,
          .closed_lower = true});
-  s.add({.name = "stiffness.degree",
-         .description = "polynomial degree of the full problem; 0: chosen",
-         .default_value = std::int64_t{0},
-         .lower = 0,
-         .upper = largest_degree,
-         .closed_lower = true,
-         .closed_upper = true});
-  s.add({.name = "level.guys",
-         .description = "equal guys, equally spread, whose stiffness is summed; 0: none",
-         .default_value = std::int64_t{0},
-         .lower = 0,
-         .upper = 100,
-         .closed_lower = true,
-         .closed_upper = true});
+  s.add_count("stiffness.degree", "polynomial degree of the full problem; 0: chosen", 0, 0, largest_degree);
+  s.add_count("level.guys", "equal guys, equally spread, whose stiffness is summed; 0: none", 0, 0, 100);
   s.add({.name = "level.azimuths_deg",
          .unit = "deg",
          .description = "or their azimuths from the mast to the anchors",
@@ -131,8 +113,8 @@ ExitStatus run(const Configuration& c, RunContext& context) {
   write_convergence(file, s);
   if (context.json) fmt::print("{}", stiffness_json(s, listed));
   if (!context.quiet) fmt::print(stderr, "{}{}", guy_text(s.guy), stiffness_text(s, listed));
-  return finish_guy(file, context, complete ? ExitStatus::ok : ExitStatus::numerical_failure,
-                    {complete ? "horizontal: range end; all poles found, an independent count agrees" : "a pole is missing"});
+  return finish(file, context, complete ? ExitStatus::ok : ExitStatus::numerical_failure,
+                {complete ? "horizontal: range end; all poles found, an independent count agrees" : "a pole is missing"});
 }
 
 }  // namespace

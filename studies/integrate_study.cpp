@@ -25,8 +25,10 @@ Schema schema() {
          .lower = 0.0,
          .example = Value{std::vector<double>{1.65, 2.15}}});
   s.add({.name = "integrate.starts",
-         .description = "starts at rest: a value for every coordinate, start after start",
-         .default_value = std::vector<double>{3.0, 0.0, 10.0, 10.0}});
+         .description = "starts at rest: a value for every coordinate, start after start; left out: 3 in the first coordinate, and 10 in the first "
+                        "out of plane and in plane",
+         .default_value = std::vector<double>{},
+         .example = Value{std::vector<double>{3.0, 0.0, 10.0, 10.0}}});
   s.add({.name = "integrate.states",
          .description = "further starts: coordinates and velocities, start after start",
          .default_value = std::vector<double>{}});
@@ -35,13 +37,9 @@ Schema schema() {
          .default_value = 1e-3,
          .lower = 0.0,
          .closed_lower = true});
-  const auto count = [&](const std::string& name, const std::string& description, std::int64_t value, double lower) {
-    s.add(
-        {.name = name, .description = description, .default_value = value, .lower = lower, .upper = 1e6, .closed_lower = true, .closed_upper = true});
-  };
-  count("integrate.transient_periods", "excitation periods of the recorded beginning of each motion; 0: none", 40, 0);
-  count("integrate.samples", "per excitation period of recorded motions; a power of two serves the spectra best", 128, 8);
-  count("integrate.record_periods", "excitation periods recorded where a motion has no period", 128, 8);
+  s.add_count("integrate.transient_periods", "excitation periods of the recorded beginning of each motion; 0: none", 40, 0, 1e6);
+  s.add_count("integrate.samples", "per excitation period of recorded motions; a power of two serves the spectra best", 128, 8, 1e6);
+  s.add_count("integrate.record_periods", "excitation periods recorded where a motion has no period", 128, 8, 1e6);
   s.add({.name = "integrate.section_phase_deg",
          .description = "phase of the excitation at which the stroboscopic points are taken",
          .default_value = 0.0,
@@ -53,7 +51,7 @@ Schema schema() {
          .default_value = std::vector<double>{},
          .max_items = 2,
          .example = Value{std::vector<double>{1.4, 2.3}}});
-  count("sweep.points", "values from end to end", 91, 2);
+  s.add_count("sweep.points", "values from end to end", 91, 2, 1e6);
   s.add({.name = "sweep.directions",
          .description = "which sweeps to make",
          .default_value = std::vector<std::string>{"up", "down"},
@@ -63,7 +61,7 @@ Schema schema() {
          .default_value = 1e-5,
          .lower = 0.0});
   s.add({.name = "sweep.start", .description = "coordinates at rest from which a sweep begins; empty: zero", .default_value = std::vector<double>{}});
-  count("sweep.max_periods", "as integration.max_periods, for each value of a sweep", 1500, 1);
+  s.add_count("sweep.max_periods", "as integration.max_periods, for each value of a sweep", 1500, 1, 1e6);
   add_integration_keys(s);
   return s;
 }
@@ -92,13 +90,19 @@ Setup setup(const Configuration& c) {
   const auto n = static_cast<Eigen::Index>(s.forced.coordinates.size());
   s.reflections = state_reflections(s.forced);
   s.omegas = c.numbers("integrate.omega");
+  std::vector<double> usual(static_cast<std::size_t>(2 * n), 0.0);
+  const auto leading = leading_coordinates(s.forced);
+  usual[static_cast<std::size_t>(leading[0])] = 3.0;
+  for (const int i : leading) usual[static_cast<std::size_t>(n + i)] = 10.0;
   const auto take = [&](const std::string& key, Eigen::Index size) {
-    const auto& values = c.numbers(key);
+    const auto& values = key == "integrate.starts" && !c.is_given(key) ? usual : c.numbers(key);
     if (static_cast<Eigen::Index>(values.size()) % size != 0) throw c.error(key, fmt::format("must hold {} values for every start", size));
     for (std::size_t k = 0; k < values.size(); k += static_cast<std::size_t>(size)) {
       Vector y = Vector::Zero(2 * n);
       for (Eigen::Index i = 0; i < size; ++i) y[i] = values[k + static_cast<std::size_t>(i)];
-      s.starts.emplace_back(start_name(s.forced, y), perturbed(y, s.reflections, c.number("integrate.perturbation")));
+      const Vector y0 = perturbed(y, s.reflections, c.number("integrate.perturbation"));
+      if (std::none_of(s.starts.begin(), s.starts.end(), [&](const auto& start) { return start.second == y0; }))
+        s.starts.emplace_back(start_name(s.forced, y), y0);
     }
   };
   take("integrate.starts", n);
@@ -317,6 +321,7 @@ std::vector<Swept> run_sweeps(const Configuration& c, const Setup& s, ResultFile
     if (swept[i].way == "down") std::reverse(values.begin(), values.end());
     SweepOptions o;
     o.tolerance = c.number("sweep.tolerance");
+    o.names = s.forced.coordinates;
     o.settle = s.settle;
     o.settle.max_periods = static_cast<int>(c.integer("sweep.max_periods"));
     o.observer = [&, i](double p) {
@@ -389,7 +394,7 @@ ExitStatus run(const Configuration& c, RunContext& context) {
     }
   if (context.json) fmt::print("{}", json_of(runs, rows, swept, s));
   if (!context.quiet) fmt::print(stderr, "{}", text_of(runs, rows, swept, s));
-  return finish_integration(file, context, whole);
+  return finish(file, context, whole ? ExitStatus::ok : ExitStatus::numerical_failure);
 }
 
 }  // namespace

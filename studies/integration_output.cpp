@@ -72,10 +72,6 @@ void add_lines(Table& table, const AttractorRow& row, int coordinate) {
 }  // namespace
 
 void add_integration_keys(Schema& s) {
-  const auto count = [&](const std::string& name, const std::string& description, std::int64_t value, double lower) {
-    s.add(
-        {.name = name, .description = description, .default_value = value, .lower = lower, .upper = 1e7, .closed_lower = true, .closed_upper = true});
-  };
   s.add({.name = "integration.relative_tolerance",
          .description = "of the explicit integrator on the way to an attractor",
          .default_value = 1e-8,
@@ -91,11 +87,12 @@ void add_integration_keys(Schema& s) {
          .default_value = 1e-11,
          .lower = 1e-14,
          .upper = 1e-6});
-  count("integration.max_periods", "excitation periods after which a motion counts as unsettled", 4000, 1);
-  count("integration.max_multiple", "longest period looked for, in excitation periods", 12, 1);
-  count("integration.nonperiodic_after", "excitation periods after which a motion that is not periodic yet is asked for its Lyapunov exponent", 400,
-        1);
-  count("integration.lyapunov_periods", "excitation periods of a Lyapunov exponent; points of the section of a motion without period", 800, 64);
+  s.add_count("integration.max_periods", "excitation periods after which a motion counts as unsettled", 4000, 1, 1e7);
+  s.add_count("integration.max_multiple", "longest period looked for, in excitation periods", 12, 1, 1e7);
+  s.add_count("integration.nonperiodic_after", "excitation periods after which a motion that is not periodic yet is asked for its Lyapunov exponent",
+              400, 1, 1e7);
+  s.add_count("integration.lyapunov_periods", "excitation periods of a Lyapunov exponent; points of the section of a motion without period", 800, 64,
+              1e7);
 }
 
 AttractorOptions attractor_options_of(const Configuration& c) {
@@ -224,6 +221,14 @@ void write_motion_tables(ResultFile& file, const std::string& group, const Attra
     const Vector v = m.record.row(static_cast<Eigen::Index>(i)).transpose();
     series.push_back({names[i], state_unit(s, static_cast<int>(i)), "settled motion", {v.begin(), v.end()}});
   }
+  if (s.tension) {
+    const auto tension = s.tension(Vector::Constant(1, m.omega));
+    const auto n = static_cast<Eigen::Index>(s.coordinates.size());
+    Column c{"tension", "N", "averaged along the chord", {}};
+    for (Eigen::Index j = 0; j < m.record.cols(); ++j)
+      c.values.push_back(tension(m.record.col(j).head(n), m.omega * series[0].values[static_cast<std::size_t>(j)]));
+    series.push_back(std::move(c));
+  }
   file.table(group + "/series", series);
   Table lines{{{"coordinate", "-", "1 for the first coordinate", {}},
                {"harmonic", "-", "frequency over omega", {}},
@@ -247,15 +252,6 @@ void write_motion_tables(ResultFile& file, const std::string& group, const Attra
   file.attribute(group, "attractor", row.name);
   file.attribute(group, "motion", std::string(to_string(m.kind)));
   file.attribute(group, "multiple", static_cast<double>(m.multiple));
-}
-
-ExitStatus finish_integration(ResultFile& file, RunContext& context, bool whole) {
-  const ExitStatus status = interrupted ? ExitStatus::stopped_by_user : whole ? ExitStatus::ok : ExitStatus::numerical_failure;
-  file.attribute("/study", "stop_reasons", std::vector<std::string>{});
-  file.attribute("/study", "warnings", context.warnings);
-  file.attribute("/study", "outcome", std::string(interrupted ? "interrupted" : whole ? "complete" : "partial"));
-  file.flush();
-  return status;
 }
 
 void write_section(ResultFile& file, const std::string& group, const Matrix& points, const ForcedSystem& s) {

@@ -36,8 +36,6 @@ std::string attractor_json(const AttractorRow& row, const ForcedSystem& s);
 
 /// series, spectrum (lines: coordinate, multiple of omega, amplitude, phase), for motions without period the whole amplitude spectrum.
 void write_motion_tables(ResultFile& file, const std::string& group, const AttractorRow& row, const ForcedSystem& s);
-/// Outcome and warnings into /study, for kinds without branches; the exit status. `whole`: everything asked for was found.
-ExitStatus finish_integration(ResultFile& file, RunContext& context, bool whole);
 /// Stroboscopic points at omega t = phase.
 void write_section(ResultFile& file, const std::string& group, const Matrix& points, const ForcedSystem& s);
 

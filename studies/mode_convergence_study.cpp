@@ -37,13 +37,7 @@ Schema schema() {
          .default_value = std::vector<std::string>{"galerkin", "quasi-static"},
          .min_items = 1,
          .choices = {"galerkin", "quasi-static"}});
-  s.add({.name = "convergence.harmonics",
-         .description = "of the periodic motion, at least; more where the highest mode needs them",
-         .default_value = std::int64_t{12},
-         .lower = 2,
-         .upper = 100,
-         .closed_lower = true,
-         .closed_upper = true});
+  s.add_count("convergence.harmonics", "of the periodic motion, at least; more where the highest mode needs them", 12, 2, 100);
   const auto range = [&](const char* name, const char* unit, const char* description, std::vector<double> value) {
     s.add({.name = name, .unit = unit, .description = description, .default_value = std::move(value), .lower = 0.0, .min_items = 2, .max_items = 2});
   };
@@ -52,13 +46,7 @@ Schema schema() {
         {0.1, 0.6});
   s.add({.name = "peak.amplitude", .unit = "m", .description = "support amplitude of the peak", .default_value = 0.15, .lower = 0.0});
   range("peak.omega", "rad/s", "frequencies between which the peak of planar motion is looked for", {1.5, 1.75});
-  s.add({.name = "peak.harmonic",
-         .description = "harmonic of the excitation whose amplitude is meant",
-         .default_value = std::int64_t{2},
-         .lower = 1,
-         .upper = 50,
-         .closed_lower = true,
-         .closed_upper = true});
+  s.add_count("peak.harmonic", "harmonic of the excitation whose amplitude is meant", 2, 1, 50);
   s.add({.name = "peak.station", .description = "where, x/L", .default_value = 0.5, .lower = 0.0, .upper = 1.0});
   return s;
 }
@@ -293,12 +281,10 @@ ExitStatus run(const Configuration& c, RunContext& context) {
       advice += fmt::format("{}{}: from {} mode{} in each plane on, threshold and peak are within 1 % of the richest model here.",
                             advice.empty() ? "" : " ", name_of(t), n, n == 1 ? "" : "s");
   file.attribute("/convergence", "advice", advice);
-  file.attribute("/study", "warnings", context.warnings);
-  file.attribute("/study", "outcome", std::string(interrupted ? "interrupted" : whole ? "complete" : "partial"));
-  file.flush();
+  const ExitStatus status = finish(file, context, whole ? ExitStatus::ok : ExitStatus::numerical_failure);
   if (context.json) fmt::print("{}", json(rows));
   if (!context.quiet) fmt::print(stderr, "{}{}\n", text(rows), advice);
-  return interrupted ? ExitStatus::stopped_by_user : whole ? ExitStatus::ok : ExitStatus::numerical_failure;
+  return status;
 }
 
 }  // namespace

@@ -45,33 +45,15 @@ Schema schema() {
            .closed_lower = tension,
            .example = tension ? std::optional<Value>(k.example) : std::nullopt});
   }
-  s.add({.name = "modes.count",
-         .description = "modes of each plane in the table",
-         .default_value = std::int64_t{6},
-         .lower = 1,
-         .upper = 200,
-         .closed_lower = true,
-         .closed_upper = true});
-  s.add({.name = "modes.stations",
-         .description = "points of a mode shape",
-         .default_value = std::int64_t{201},
-         .lower = 11,
-         .upper = 100001,
-         .closed_lower = true,
-         .closed_upper = true});
+  s.add_count("modes.count", "modes of each plane in the table", 6, 1, 200);
+  s.add_count("modes.stations", "points of a mode shape", 201, 11, 100001);
   s.add({.name = "omega", .unit = "rad/s", .description = "excitation frequency to judge resonance conditions by", .optional = true, .lower = 0.0});
   s.add({.name = "resonances.tolerance",
          .description = "largest relative distance of a resonance condition that counts as near",
          .default_value = 0.1,
          .lower = 0.0,
          .upper = 1.0});
-  s.add({.name = "resonances.superharmonics",
-         .description = "highest superharmonic order",
-         .default_value = std::int64_t{3},
-         .lower = 1,
-         .upper = 20,
-         .closed_lower = true,
-         .closed_upper = true});
+  s.add_count("resonances.superharmonics", "highest superharmonic order", 3, 1, 20);
   return s;
 }
 

@@ -23,10 +23,46 @@ std::complex<double> amplitude(const HarmonicBalance& hb, In u, int i, double k)
   return {u[hb.index(i, h)], -u[hb.index(i, h) + 1]};
 }
 
-double displacement(const HarmonicBalance& hb, In u, int i, double theta) {
+// cos(2 pi j / samples); the sine stands a quarter of the table before.
+const std::array<double, samples>& cosines() {
+  static const auto table = [] {
+    std::array<double, samples> t{};
+    for (int j = 0; j < samples; ++j) t[static_cast<std::size_t>(j)] = std::cos(2.0 * std::numbers::pi * j / samples);
+    return t;
+  }();
+  return table;
+}
+
+// Coordinate i at sample m of the base period.
+double displacement(const HarmonicBalance& hb, In u, int i, int m) {
+  const auto& cosine = cosines();
   double q = u[hb.index(i, 0)];
-  for (int k = 1; k <= hb.harmonics(); ++k) q += u[hb.index(i, k)] * std::cos(k * theta) + u[hb.index(i, k) + 1] * std::sin(k * theta);
+  for (int k = 1; k <= hb.harmonics(); ++k) {
+    const int at = (k * m) % samples;
+    q += u[hb.index(i, k)] * cosine[static_cast<std::size_t>(at)] +
+         u[hb.index(i, k) + 1] * cosine[static_cast<std::size_t>((at + 3 * samples / 4) % samples)];
+  }
   return q;
+}
+
+// The largest of periodic samples, by a parabola through it and its neighbours: the error falls with the fourth power of the spacing.
+double top_of_samples(const Vector& f) {
+  Eigen::Index at = 0;
+  const auto n = f.size();
+  const double top = f.maxCoeff(&at), before = f[(at + n - 1) % n], after = f[(at + 1) % n], bend = before - 2.0 * top + after;
+  return bend < 0.0 ? top - 0.125 * (after - before) * (after - before) / bend : top;
+}
+
+// Largest tension over the period, at every fourth sample and a parabola through the largest.
+double largest_tension(const ForcedSystem& source, const HarmonicBalance& hb, In u) {
+  constexpr int every = 4, count = samples / every;
+  const auto tension = source.tension(u.tail(hb.parameters()));
+  Vector q(hb.coordinates()), T(count);
+  for (int m = 0; m < count; ++m) {
+    for (int i = 0; i < hb.coordinates(); ++i) q[i] = displacement(hb, u, i, every * m);
+    T[m] = tension(q, 2.0 * std::numbers::pi * hb.nu() * m / count);
+  }
+  return top_of_samples(T);
 }
 
 double farthest(const Eigen::VectorXcd& from, const Eigen::VectorXcd& to) {
@@ -39,14 +75,10 @@ double farthest(const Eigen::VectorXcd& from, const Eigen::VectorXcd& to) {
 
 std::string harmonic_name(const std::string& coordinate, double k) { return fmt::format("{}_h{:g}", coordinate, k); }
 
-// A parabola through the largest sample and its neighbours: the error falls with the fourth power of the spacing.
 double peak(const HarmonicBalance& hb, In u, int coordinate) {
   Vector q(samples);
-  const double step = 2.0 * std::numbers::pi / samples;
-  for (int m = 0; m < samples; ++m) q[m] = std::abs(displacement(hb, u, coordinate, m * step));
-  Eigen::Index at = 0;
-  const double top = q.maxCoeff(&at), before = q[(at + samples - 1) % samples], after = q[(at + 1) % samples], bend = before - 2.0 * top + after;
-  return bend < 0.0 ? top - 0.125 * (after - before) * (after - before) / bend : top;
+  for (int m = 0; m < samples; ++m) q[m] = std::abs(displacement(hb, u, coordinate, m));
+  return top_of_samples(q);
 }
 
 BranchOutput orbit_output(const OrbitBranches& orbits, const std::string& parameter, int harmonics) {
@@ -73,12 +105,17 @@ BranchOutput orbit_output(const OrbitBranches& orbits, const std::string& parame
             {name + "_phase", "rad", "its phase", [&orbits, i, k](In u) { return std::arg(amplitude(orbits.balance_of(u), u, i, k)); }});
     }
   }
+  if (source.tension)
+    out.columns.push_back({"tension_max", "N", "largest tension over the period: averaged along the chord, T + AE (mean strain)",
+                           [&orbits](In u) { return largest_tension(orbits.source(), orbits.balance_of(u), u); }});
   if (parameter == "omega")
     out.columns.push_back({"frequency", "Hz", "omega / 2 pi", [](In u) { return u[u.size() - 1] / (2.0 * std::numbers::pi); }});
-  // The printed table: peaks and whole harmonics of the first two coordinates.
+  // The printed table: peaks and first harmonics of the leading coordinates.
   for (auto& column : out.columns)
-    for (std::size_t c = 0; c < std::min<std::size_t>(2, source.coordinates.size()); ++c)
-      column.shown = column.shown || column.name == source.coordinates[c] + "_max" || column.name == source.coordinates[c] + "_h1";
+    for (const int c : leading_coordinates(source)) {
+      const std::string& q = source.coordinates[static_cast<std::size_t>(c)];
+      column.shown = column.shown || column.name == q + "_max" || column.name == q + "_h1";
+    }
   return out;
 }
 
@@ -90,11 +127,17 @@ void write_orbit(ResultFile& file, const std::string& group, const OrbitBranches
   std::vector<Column> table{{"t", "s", "time, cos(omega t) = 1 at t = 0", {}}};
   for (const auto& q : source.coordinates) table.push_back({q, source.length_unit, "displacement", {}});
   for (const auto& q : source.coordinates) table.push_back({q + "_rate", source.length_unit == "m" ? "m/s" : "1/s", "velocity", {}});
+  ForcedSystem::Tension tension;
+  if (source.tension) {
+    tension = source.tension(motion.u.tail(hb.parameters()));
+    table.push_back({"tension", "N", "averaged along the chord", {}});
+  }
   for (int m = 0; m <= 256; ++m) {
     const double t = period * m / 256;
     const Vector y = hb.state_at(motion.u, t);
     table[0].values.push_back(t);
     for (std::size_t i = 0; i < 2 * n; ++i) table[i + 1].values.push_back(y[static_cast<Eigen::Index>(i)]);
+    if (tension) table.back().values.push_back(tension(y.head(static_cast<Eigen::Index>(n)), 2.0 * std::numbers::pi * hb.nu() * m / 256));
   }
   file.table(group, table);
   file.attribute(group, "branch", motion.branch);

@@ -24,56 +24,20 @@ struct Setup {
 };
 
 void add_periodic_keys(Schema& s) {
-  s.add({.name = "periodic.nu",
-         .description = "base period in excitation periods: 2 or 3 for subharmonic motions started from integration",
-         .default_value = std::int64_t{1},
-         .lower = 1,
-         .upper = 12,
-         .closed_lower = true,
-         .closed_upper = true});
-  s.add({.name = "periodic.harmonics",
-         .description = "harmonics of omega/nu; 0: as many as periodic.tolerance needs",
-         .default_value = std::int64_t{0},
-         .lower = 0,
-         .upper = 500,
-         .closed_lower = true,
-         .closed_upper = true});
+  s.add_count("periodic.nu", "base period in excitation periods: 2 or 3 for subharmonic motions started from integration", 1, 1, 12);
+  s.add_count("periodic.harmonics", "harmonics of omega/nu; 0: as many as periodic.tolerance needs", 0, 0, 500);
   s.add({.name = "periodic.tolerance",
          .description = "bound on what the harmonics left out may change, relative to the largest amplitude",
          .default_value = 1e-9,
          .lower = 0.0,
          .upper = 0.1});
-  s.add({.name = "periodic.max_harmonics",
-         .description = "harmonics are not raised beyond",
-         .default_value = std::int64_t{120},
-         .lower = 1,
-         .upper = 1000,
-         .closed_lower = true,
-         .closed_upper = true});
-  s.add({.name = "periodic.period_doublings",
-         .description = "how often the branch born at a period doubling is followed",
-         .default_value = std::int64_t{1},
-         .lower = 0,
-         .upper = 4,
-         .closed_lower = true,
-         .closed_upper = true});
-  s.add({.name = "periodic.amplitudes",
-         .description = "amplitudes of the harmonics up to this multiple of omega are columns of the result",
-         .default_value = std::int64_t{3},
-         .lower = 1,
-         .upper = 50,
-         .closed_lower = true,
-         .closed_upper = true});
+  s.add_count("periodic.max_harmonics", "harmonics are not raised beyond", 120, 1, 1000);
+  s.add_count("periodic.period_doublings", "how often the branch born at a period doubling is followed", 1, 0, 4);
+  s.add_count("periodic.amplitudes", "amplitudes of the harmonics up to this multiple of omega are columns of the result", 3, 1, 50);
 }
 
 void add_seed_keys(Schema& s) {
-  s.add({.name = "seeds.grid",
-         .description = "parameter values at which the linear response (and a cable's averaged motions) start branches",
-         .default_value = std::int64_t{9},
-         .lower = 1,
-         .upper = 10000,
-         .closed_lower = true,
-         .closed_upper = true});
+  s.add_count("seeds.grid", "parameter values at which the linear response (and a cable's averaged motions) start branches", 9, 1, 10000);
   s.add({.name = "seeds.values",
          .description = "parameter values at which integrated motions start branches that nothing else reaches",
          .default_value = std::vector<double>{}});

@@ -43,18 +43,9 @@ void add_ansatz_keys(Schema& s) {
          .description = "of the combinatorial response: q1 at 1/2, 3/2 and q2 at 0, 1, 2 (60), or q2 at 1/2, 1, 3/2 (70)",
          .default_value = std::string("coupled"),
          .choices = {"coupled", "in-plane"}});
-  const auto whole = [&](const std::string& name, const std::string& description, std::int64_t value, double lower, double upper) {
-    s.add({.name = name,
-           .description = description,
-           .default_value = value,
-           .lower = lower,
-           .upper = upper,
-           .closed_lower = true,
-           .closed_upper = true});
-  };
-  whole("ansatz.harmonics", "H of the complete ansatz, in units of omega/nu", 8, 1, 200);
-  whole("ansatz.nu", "of the complete ansatz: the motion repeats after nu excitation periods", 1, 1, 16);
-  whole("ansatz.order", "n of the frozen ansatz", 2, 1, 50);
+  s.add_count("ansatz.harmonics", "H of the complete ansatz, in units of omega/nu", 8, 1, 200);
+  s.add_count("ansatz.nu", "of the complete ansatz: the motion repeats after nu excitation periods", 1, 1, 16);
+  s.add_count("ansatz.order", "n of the frozen ansatz", 2, 1, 50);
   s.add({.name = "ansatz.frozen",
          .description = "of a list: forced harmonics outside it stay in the motion as the linear response",
          .default_value = false});

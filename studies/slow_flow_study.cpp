@@ -30,23 +30,14 @@ struct Setup {
 };
 
 void add_seed_keys(Schema& s) {
-  const auto whole = [&](const std::string& name, const std::string& description, std::int64_t value, double lower, double upper) {
-    s.add({.name = name,
-           .description = description,
-           .default_value = value,
-           .lower = lower,
-           .upper = upper,
-           .closed_lower = true,
-           .closed_upper = true});
-  };
-  whole("seeds.grid", "parameter values at which further solutions are looked for; 0: only what the linear response leads to", 5, 0, 10000);
+  s.add_count("seeds.grid", "parameter values at which further solutions are looked for; 0: only what the linear response leads to", 5, 0, 10000);
   s.add({.name = "seeds.starts",
          .unit = "m",
          .description = "displacements at rest from which the equations of motion are integrated there, one number a coordinate, start after start; "
                         "by default rest, 3 in the first coordinate, 10 in all",
          .default_value = std::vector<double>{}});
-  whole("seeds.max_periods", "excitation periods of each of these integrations; 0: none", 1000, 0, 10000000);
-  whole("seeds.random", "random states from which deflated Newton starts there", 6, 0, 10000);
+  s.add_count("seeds.max_periods", "excitation periods of each of these integrations; 0: none", 1000, 0, 10000000);
+  s.add_count("seeds.random", "random states from which deflated Newton starts there", 6, 0, 10000);
   s.add({.name = "seeds.size", .unit = "m", .description = "largest entry of a random state", .default_value = 3.0, .lower = 0.0});
 }
 
@@ -57,13 +48,7 @@ Schema schema() {
   add_continuation_keys(s, "omega");
   add_seed_keys(s);
   add_verification_keys(s);
-  s.add({.name = "verification.transient_periods",
-         .description = "excitation periods recorded from the start of each run from rest",
-         .default_value = std::int64_t{60},
-         .lower = 0,
-         .upper = 100000,
-         .closed_lower = true,
-         .closed_upper = true});
+  s.add_count("verification.transient_periods", "excitation periods recorded from the start of each run from rest", 60, 0, 100000);
   return s;
 }
 

@@ -31,21 +31,10 @@ struct Setup {
 Schema schema() {
   Schema s("superharmonic", "superharmonic response of a stay: averaged branches, whirling points, time integration");
   add_stay_keys(s);
-  s.add({.name = "response.order",
-         .description = "superharmonic order n",
-         .default_value = std::int64_t{2},
-         .lower = 2,
-         .upper = 50,
-         .closed_lower = true,
-         .closed_upper = true});
+  s.add_count("response.order", "superharmonic order n", 2, 2, 50);
   add_continuation_keys(s, "omega");
-  s.add({.name = "continuation.seed_grid",
-         .description = "parameter values at which all closed-form solutions are tried as starts of further branches; 0: none",
-         .default_value = std::int64_t{61},
-         .lower = 0,
-         .upper = 100000,
-         .closed_lower = true,
-         .closed_upper = true});
+  s.add_count("continuation.seed_grid", "parameter values at which all closed-form solutions are tried as starts of further branches; 0: none", 61, 0,
+              100000);
   add_verification_keys(s);
   s.add({.name = "orbits.omega",
          .unit = "rad/s",

@@ -32,20 +32,8 @@ Schema schema() {
          .upper = 10.0,
          .min_items = 2,
          .max_items = 2});
-  s.add({.name = "veering.modes",
-         .description = "frequencies followed",
-         .default_value = std::int64_t{6},
-         .lower = 2,
-         .upper = 40,
-         .closed_lower = true,
-         .closed_upper = true});
-  s.add({.name = "veering.points",
-         .description = "flexibilities in the range, evenly spaced in its logarithm",
-         .default_value = std::int64_t{240},
-         .lower = 10,
-         .upper = 100000,
-         .closed_lower = true,
-         .closed_upper = true});
+  s.add_count("veering.modes", "frequencies followed", 6, 2, 40);
+  s.add_count("veering.points", "flexibilities in the range, evenly spaced in its logarithm", 240, 10, 100000);
   s.add({.name = "veering.height_over_span",
          .description = "h/b of further cables with the same b/2a and the same horizontal tension; empty: this cable only",
          .default_value = std::vector<double>{},

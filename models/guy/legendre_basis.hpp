@@ -1,5 +1,5 @@
 #pragma once
-/// Legendre polynomials on [-1, 1] for spectral methods: Gauss nodes of any number, and the hierarchical basis whose slopes are orthonormal.
+/// The hierarchical basis on [-1, 1] whose slopes are orthonormal, free at x = 1: core/legendre.hpp's functions that vanish at both ends, and a line.
 ///
 ///     phi_0(x) = (1 + x)/2,   phi_j(x) = (P_{j+1} - P_{j-1}) / sqrt(2 (2j + 1)),  j = 1 ... degree - 1,
 ///
@@ -10,15 +10,9 @@
 ///     const LegendreBasis basis(48, rule.nodes);            // values and slopes at the nodes
 ///     Matrix k = basis.slope.transpose() * (rule.weights.array() * stiffness.array()).matrix().asDiagonal() * basis.slope;
 
-#include <Eigen/Core>
+#include "core/legendre.hpp"
 
 namespace whirl::models::guy {
-
-struct GaussRule {
-  Eigen::VectorXd nodes, weights;  ///< increasing in (-1, 1); sum 2
-};
-
-[[nodiscard]] GaussRule gauss_legendre(int points);
 
 struct LegendreBasis {
   LegendreBasis(int degree, const Eigen::VectorXd& x);

@@ -78,24 +78,33 @@ Displacement displacement(const CableModel& model, In q, double xi) {
 }
 
 // AE times the strain averaged along the chord; the same in both treatments but for the square of the stretching itself.
-double mean_tension(const CableModel& model, In q, double phase) {
+CableTension::CableTension(const CableModel& model) : pull_(Vector::Zero(model.size())), stretch_(Matrix::Zero(model.size(), model.size())) {
   const auto& c = model.stay.cable;
   const auto shape = parabola(c);
   const auto modes = basis_modes(model, shape.irvine_lambda2);
   const SlopeIntegrals<double> I(modes);
   const auto direction = direction_of(model.direction, c.inclination_deg);
-  const double e = model.stay.support_amplitude / c.chord_length * std::cos(phase) * (model.end == End::upper ? 1.0 : -1.0);
-  double strain = e * direction[0] + 0.5 * e * e * (direction[1] * direction[1] + direction[2] * direction[2]);
-  if (model.longitudinal == Longitudinal::galerkin) strain += 0.5 * e * e * direction[0] * direction[0];
-  for (int a = 0; a < model.size(); ++a) {
-    const auto& m = modes[static_cast<std::size_t>(a)];
-    if (m.in_plane) strain += shape.sag_ratio * 8.0 * m.mean * q[a] / c.chord_length;
-    for (int b = 0; b < model.size(); ++b)
-      if (m.in_plane == modes[static_cast<std::size_t>(b)].in_plane && (m.half_waves + modes[static_cast<std::size_t>(b)].half_waves) % 2 == 0)
-        strain += 0.5 * I.two(std::min(a, b), std::max(a, b)) * q[a] * q[b] / (c.chord_length * c.chord_length);
+  const double e = model.stay.support_amplitude / c.chord_length * (model.end == End::upper ? 1.0 : -1.0), L = c.chord_length;
+  at_rest_ = c.chord_tension;
+  stiffness_ = c.axial_stiffness * stretching_rate(model, c, shape) / stiffness_rate(c);
+  along_ = e * direction[0];
+  across_ = 0.5 * e * e * (direction[1] * direction[1] + direction[2] * direction[2]);
+  if (model.longitudinal == Longitudinal::galerkin) across_ += 0.5 * e * e * direction[0] * direction[0];
+  for (int b = 0; b < model.size(); ++b) {
+    const auto& m = modes[static_cast<std::size_t>(b)];
+    if (m.in_plane) pull_[b] = shape.sag_ratio * 8.0 * m.mean / L;
+    for (int a = 0; a <= b; ++a) {
+      const auto& other = modes[static_cast<std::size_t>(a)];
+      if (m.in_plane == other.in_plane && (m.half_waves + other.half_waves) % 2 == 0) stretch_(a, b) = stretch_(b, a) = 0.5 * I.two(a, b) / (L * L);
+    }
   }
-  const double rate = stretching_rate(model, c, shape) / stiffness_rate(c);
-  return c.chord_tension + c.axial_stiffness * rate * strain;
 }
+
+double CableTension::operator()(In q, double phase) const {
+  const double c = std::cos(phase);
+  return at_rest_ + stiffness_ * (along_ * c + across_ * c * c + pull_.dot(q) + q.dot(stretch_ * q));
+}
+
+double mean_tension(const CableModel& model, In q, double phase) { return CableTension(model)(q, phase); }
 
 }  // namespace whirl::models

@@ -66,7 +66,18 @@ struct Displacement {
 Displacement displacement(const CableModel& model, In q, double xi);
 /// phi_a(xi) of every coordinate.
 Vector shapes_at(const CableModel& model, double xi);
-/// Tension averaged along the chord [N]; `phase` = omega t.
+/// Tension averaged along the chord [N]; `phase` = omega t. What does not move is computed once: for many instants of one cable.
+class CableTension {
+ public:
+  explicit CableTension(const CableModel& model);
+  double operator()(In q, double phase) const;
+
+ private:
+  double at_rest_, stiffness_;  // N
+  double along_, across_;       // strain of the support's displacement, and half its square
+  Vector pull_;                 // strain of each mode at the sag [1/m]
+  Matrix stretch_;              // strain of pairs of modes [1/m^2]
+};
 double mean_tension(const CableModel& model, In q, double phase);
 
 }  // namespace whirl::models

@@ -117,6 +117,72 @@ TEST_CASE("orbits: special points of the full coupling, each with its multiplier
     }
 }
 
+namespace {
+
+// Distance of start and end of the motion carried by CVODE over `periods`, the signs applied at the end, and how far that map's derivative is from
+// having the multiplier mu: unknowns (q, q', omega), as many equations.
+Vector integrated_defect(const ParametricSystem& stay, const Vector& z, const Vector& signs, int periods, double mu) {
+  const auto n = signs.size();
+  ModalSystem<double> system;
+  stay.at(std::span<const double>(&z[n], 1), system);
+  const IntegratedPeriod run = monodromy_by_integration(system, z.head(n), periods);
+  REQUIRE(run.ok);
+  const Matrix derivative = signs.asDiagonal() * run.monodromy;
+  Vector defect(n + 1);
+  defect << signs.cwiseProduct(run.end) - z.head(n), (derivative - mu * Matrix::Identity(n, n)).determinant();
+  return defect;
+}
+
+// Newton on the above with differences: nothing of harmonic balance, collocation or walker is in it.
+Vector integrated_point(const ParametricSystem& stay, Vector z, const Vector& signs, int periods, double mu) {
+  const auto m = z.size();
+  for (int i = 0; i < 8; ++i) {
+    const Vector r = integrated_defect(stay, z, signs, periods, mu);
+    Matrix j(m, m);
+    for (int k = 0; k < m; ++k) {
+      const double h = 1e-5 * (1.0 + std::abs(z[k]));
+      j.col(k) = (integrated_defect(stay, z + h * Vector::Unit(m, k), signs, periods, mu) - r) / h;
+    }
+    const Vector step = j.partialPivLu().solve(r);
+    z -= step;
+    if (step.norm() < 1e-10) break;
+  }
+  return z;
+}
+
+}  // namespace
+
+TEST_CASE("orbits: special points of the full coupling's doubled branches, found again by integration alone", "[slow]") {
+  const HarmonicBalance hb = stay_harmonic_balance(oresund(), {Lens("omega")}, {.harmonics = 24}, Terms::full);
+  const OrbitNetwork net = whole(hb, 1.05, 2.4, 1);
+  compare(net.network(1), {{"DIP1", "BP", "SB", 2.21128023858, 0, 1},
+                           {"DIP1", "LP", "", 2.32317588952, 1, 2},
+                           {"DIP1", "BP", "SB", 2.16641846345, 2, 1},
+                           {"DIP1", "BP", "PD", 2.11021117128, 1, 1},
+                           {"DIP2", "LP", "", 2.17804875823, 1, 0},
+                           {"DIP2", "LP", "", 2.31635178937, 0, 1},
+                           {"DIP2", "LP", "", 2.22509666846, 1, 0},
+                           {"DIP2", "BP", "PD", 2.23197839079, 0, 0},
+                           {"DW1", "BP", "SB", 2.16641846345, 1, 1}});
+  const ParametricSystem stay = stay_system(oresund(), {Lens("omega")}, Terms::full, Coefficients::exact);
+  const auto& doubled = dynamic_cast<const HarmonicBalance&>(net.problem(1));
+  const Vector same = Vector::Ones(4), mirrored = (Vector(4) << -1.0, 1.0, -1.0, 1.0).finished();
+  for (const auto& b : net.network(1).branches())
+    for (const auto& s : b.special) {
+      const double omega = s.u[doubled.size()];
+      INFO(b.name << " " << to_string(s.type) << s.subtype << " at " << omega);
+      // Started beside the point: what the root owes to the balance is no more than which root it is.
+      Vector z(5);
+      z << doubled.state_at(s.u, 0.0).array() + 1e-5, omega + 1e-6;
+      // One period takes a motion that is its own mirror image half of its period later to that image, there a doubling of the map: a simple root.
+      // The end on the motion of one period is that one's doubling.
+      if (s.subtype == "SB") z = integrated_point(stay, z, mirrored, 1, -1.0);
+      else if (s.subtype == "PD") z = integrated_point(stay, z, same, 1, -1.0);
+      else z = integrated_point(stay, z, same, 2, 1.0);
+      CHECK(z[4] == Approx(omega).epsilon(0).margin(2e-11));  // CVODE at 1e-13 a step; the balance leaves 2e-12 at 24 harmonics
+    }
+}
+
 TEST_CASE("orbits: two doublings 0.003 rad/s apart are told apart by their directions") {
   const HarmonicBalance hb = stay_harmonic_balance(oresund(), {Lens("omega")}, {.harmonics = 12});
   Walker walker(hb, {.lower = 2.02, .upper = 2.15});  // steps of up to 0.005 rad/s

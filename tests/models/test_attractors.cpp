@@ -268,3 +268,45 @@ TEST_CASE("a motion that grows without bound is diverging, misuse throws") {
   bad.max_periods = 0;
   CHECK_THROWS_AS(AttractorFinder(soft, bad), std::invalid_argument);
 }
+
+TEST_CASE("settle: a motion that decays more slowly than it is given time is told with its rate, not called quasi-periodic") {
+  const auto oscillator = [](double c) {
+    ModalSystem<double> s;
+    s.omega = 1.0;
+    s.damping = {c};
+    s.stiffness = {2.0};
+    s.add_force(0, 1.0, 1);
+    return s;
+  };
+  const SettleOptions o{.max_periods = 400, .samples = 16, .record_periods = 8, .lyapunov_periods = 64};
+  const double c = 3e-4;  // over the periods given the free part falls by a third
+  const SteadyMotion decaying = settle(oscillator(c), point({2.0, 0.0}), o);
+  CHECK(decaying.kind == MotionKind::unsettled);
+  // The largest of 50 distances at either end, between which the beat leaves 1 %; the decay between them is 14 %.
+  CHECK(decaying.decay_rate == Approx(0.5 * c).epsilon(0.1));
+  CHECK(decaying.why.find("still decaying after 400 periods") == 0);
+  const SteadyMotion growing = settle(oscillator(-c), point({2.0, 0.0}), o);
+  CHECK(growing.kind == MotionKind::unsettled);
+  CHECK(growing.decay_rate == Approx(-0.5 * c).epsilon(0.1));
+  CHECK(growing.why.find("still growing") == 0);
+  // Without damping the free part lasts: two frequencies for ever.
+  const SteadyMotion lasting = settle(oscillator(0.0), point({2.0, 0.0}), o);
+  CHECK(lasting.kind == MotionKind::quasi_periodic);
+  CHECK(lasting.why.empty());
+  CHECK(lasting.decay_rate == 0.0);
+  // With more time the slow one settles.
+  CHECK(settle(oscillator(0.05), point({2.0, 0.0}), o).kind == MotionKind::periodic);
+}
+
+TEST_CASE("settle: between the torus points of the 1:2 pair the motion lasts without a period") {
+  ModalSystem<double> s;
+  s.omega = 0.99;
+  s.damping = {0.005, 0.01};
+  s.stiffness = {1.0, 4.0};
+  s.add_term(0, 1.0, {0, 1});
+  s.add_term(1, 1.0, {0, 0});
+  s.add_force(0, 0.01, 1);
+  const SteadyMotion m = settle(s, point({0.1, 0.0, 0.0, 0.0}), {.max_periods = 2000, .samples = 16, .record_periods = 8});
+  INFO(m.why);
+  CHECK(m.kind == MotionKind::quasi_periodic);
+}

@@ -453,3 +453,44 @@ TEST_CASE("Floquet: threshold of parametric resonance at twice the natural frequ
     CHECK(largest(low) == Approx(-1.0).epsilon(0).margin(1e-11));
   }
 }
+
+namespace {
+
+// z'' + c z' + k z + s(t) g z = 0 of many coordinates, g symmetric, entries up to `strength` times the least stiffness, with cos t and cos 2 t.
+ModalSystem<double> parametric(int n, double strength) {
+  ModalSystem<double> s;
+  s.omega = 1.3;
+  for (int i = 0; i < n; ++i) {
+    s.damping.push_back(0.01 * (1 + i));
+    s.stiffness.push_back((1.0 + i) * (1.0 + i));
+  }
+  for (int i = 0; i < n; ++i)
+    for (int j = 0; j <= i; ++j) {
+      const double g = strength * std::sin(1.0 + 3.0 * i + 7.0 * j);
+      s.add_term(i, g, {j}, 1 + (i + j) % 2);
+      if (i != j) s.add_term(j, g, {i}, 1 + (i + j) % 2);
+    }
+  return s;
+}
+
+}  // namespace
+
+TEST_CASE("Floquet: many coupled coordinates, swept where the coupling is weak and eliminated where it is not, against CVODE") {
+  for (const double strength : {0.05, 0.8, 60.0}) {
+    INFO("coupling " << strength);
+    const auto system = parametric(7, strength);
+    Floquet floquet(system, 0, 1);
+    const FloquetResult& f = floquet.compute(system, Vector::Zero(7));
+    REQUIRE(f.converged);
+    REQUIRE(f.blocks.size() == 1);
+    const IntegratedPeriod period = monodromy_by_integration(system, Vector::Zero(14), 1);
+    REQUIRE(period.ok);
+    // CVODE at 1e-13 a step
+    CHECK((f.monodromy - period.monodromy).lpNorm<Eigen::Infinity>() < 1e-9 * period.monodromy.lpNorm<Eigen::Infinity>());
+    if (strength > 1.0) continue;  // grows by e^40: the determinant of the matrix is rounding
+    CHECK(f.eliminated == 0);
+    double trace = 0.0;
+    for (const double c : system.damping) trace += c;
+    CHECK(std::log(f.monodromy.determinant()) == Approx(-trace * two_pi / system.omega).epsilon(1e-6));  // Liouville
+  }
+}

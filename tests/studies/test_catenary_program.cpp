@@ -11,36 +11,13 @@
 #include <sstream>
 
 #include "studies/result_file.hpp"
+#include "tests/studies/program.hpp"
 
 namespace fs = std::filesystem;
 using namespace whirl::studies;
+using namespace whirl::studies::tests;
 
 namespace {
-
-struct Ran {
-  int status;
-  std::string out, err;
-};
-
-struct Folder {
-  fs::path path = fs::temp_directory_path() / ("whirl-catenary-" + std::to_string(::getpid()));
-  Folder() { fs::create_directories(path); }
-  ~Folder() { fs::remove_all(path); }
-};
-
-std::string slurp(const fs::path& p) {
-  std::ifstream in(p);
-  std::stringstream s;
-  s << in.rdbuf();
-  return s.str();
-}
-
-Ran program(const Folder& f, const std::string& arguments) {
-  const auto out = f.path / "out.txt", err = f.path / "err.txt";
-  const std::string command = "cd '" + f.path.string() + "' && " + WHIRL_PROGRAM + " " + arguments + " >" + out.string() + " 2>" + err.string();
-  const int code = std::system(command.c_str());
-  return {WIFEXITED(code) ? WEXITSTATUS(code) : 128 + WTERMSIG(code), slurp(out), slurp(err)};
-}
 
 std::string study(const std::string& name) { return std::string(WHIRL_SOURCE_DIR) + "/studies/" + name + ".toml "; }
 

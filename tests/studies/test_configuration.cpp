@@ -6,8 +6,10 @@
 #include <fstream>
 
 #include "studies/configuration.hpp"
+#include "tests/studies/refusal.hpp"
 
 using namespace whirl::studies;
+using namespace whirl::studies::tests;
 
 namespace {
 
@@ -57,25 +59,8 @@ amplitude = 0.5
 range = [1.2, 2]
 )";
 
-std::string replaced(std::string text, const std::string& what, const std::string& by) {
-  const auto at = text.find(what);
-  REQUIRE(at != std::string::npos);
-  return text.replace(at, what.size(), by);
-}
-
 Configuration read(const std::string& text, const Configuration::Overrides& overrides = {}) {
   return Configuration::from_text(text, "my.toml", schemas(), overrides);
-}
-
-template <class Run>
-std::string message(Run&& run) {
-  try {
-    run();
-  } catch (const InputError& e) {
-    CHECK(std::string(e.what()).find('\n') == std::string::npos);
-    return e.what();
-  }
-  return "accepted";
 }
 
 std::string complaint(const std::string& text, const Configuration::Overrides& overrides = {}) {

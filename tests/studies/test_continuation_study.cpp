@@ -9,40 +9,20 @@
 #include <regex>
 #include <sstream>
 
+#include "tests/studies/program.hpp"
+
 namespace fs = std::filesystem;
+using namespace whirl::studies::tests;
 
 namespace {
 
-struct Ran {
-  int status;
-  std::string out, err;
-};
-
-std::string slurp(const fs::path& p) {
-  std::ifstream in(p);
-  std::stringstream s;
-  s << in.rdbuf();
-  return s.str();
-}
-
-class Folder {
- public:
-  Folder() { fs::create_directories(path_); }
-  ~Folder() { fs::remove_all(path_); }
-  Ran run(const std::string& arguments) const {
-    const auto out = path_ / "out.txt", err = path_ / "err.txt";
-    const int code = std::system(
-        ("cd '" + path_.string() + "' && " + WHIRL_PROGRAM + " run " + arguments + " -o r.h5 >" + out.string() + " 2>" + err.string()).c_str());
-    return {WIFEXITED(code) ? WEXITSTATUS(code) : -1, slurp(out), slurp(err)};
-  }
+struct RunFolder : Folder {
+  Ran run(const std::string& arguments) const { return program(*this, "run " + arguments + " -o r.h5"); }
   Ran run_text(const std::string& text, const std::string& arguments = "") const {
-    std::ofstream(path_ / "my.toml") << text;
+    std::ofstream(path / "my.toml") << text;
     return run("my.toml " + arguments);
   }
-  bool has_result() const { return fs::exists(path_ / "r.h5"); }
-
- private:
-  fs::path path_ = fs::temp_directory_path() / ("whirl-continuation-" + std::to_string(::getpid()));
+  bool has_result() const { return fs::exists(path / "r.h5"); }
 };
 
 std::string study(const std::string& name) { return std::string(WHIRL_SOURCE_DIR) + "/studies/" + name; }
@@ -81,7 +61,7 @@ range = [-1.0, 1.0]
 }  // namespace
 
 TEST_CASE("a normal form in ten lines", "[continuation_study]") {
-  const Folder f;
+  const RunFolder f;
   const Ran r = f.run_text(cusp, "--json");
   CHECK(r.status == 0);
   const double fold = 2.0 / (3.0 * std::sqrt(3.0));
@@ -90,7 +70,7 @@ TEST_CASE("a normal form in ten lines", "[continuation_study]") {
 }
 
 TEST_CASE("the example inputs give the published values", "[continuation_study][published]") {
-  const Folder f;
+  const RunFolder f;
   Ran r = f.run(study("lorenz.toml") + " --json");
   CHECK(r.status == 0);
   check_values(values(r.out, "HB", "rho"), {470.0 / 19.0}, 1e-9);
@@ -110,7 +90,7 @@ TEST_CASE("the example inputs give the published values", "[continuation_study][
 }
 
 TEST_CASE("charts of systems given as expressions", "[continuation_study][published]") {
-  const Folder f;
+  const RunFolder f;
   Ran r = f.run(study("cusp.toml") + " --json");
   CHECK(r.status == 0);
   check_values(values(r.out, "CP", "mu"), {0.0}, 1e-10);
@@ -156,7 +136,7 @@ TEST_CASE("a closed curve between the ends of the range is found without a seed"
 }
 
 TEST_CASE("isolas are found by deflation and told", "[continuation_study]") {
-  const Folder f;
+  const RunFolder f;
   const std::string text = R"toml(study = "continuation"
 [equilibrium_model]
 variables = ["x"]
@@ -176,7 +156,7 @@ range = [-1.0, 1.0]
 }
 
 TEST_CASE("bad input to a continuation gives one line", "[continuation_study]") {
-  const Folder f;
+  const RunFolder f;
   const auto refused = [&](const std::string& set, const std::string& words) {
     const Ran r = f.run_text(cusp, "--set " + set);
     INFO(r.err);
@@ -194,7 +174,7 @@ TEST_CASE("bad input to a continuation gives one line", "[continuation_study]") 
 }
 
 TEST_CASE("the averaged response of a stay is a continuation too", "[continuation_study]") {
-  const Folder f;
+  const RunFolder f;
   std::string text = slurp(study("oresund-threshold.toml"));
   text = std::regex_replace(text, std::regex("\"two-parameter\""), "\"continuation\"");
   text = text.substr(0, text.find("[second]"));

@@ -10,38 +10,17 @@
 #include <sstream>
 
 #include "studies/result_file.hpp"
+#include "tests/studies/program.hpp"
 
 namespace fs = std::filesystem;
 using namespace whirl::studies;
+using namespace whirl::studies::tests;
 
 namespace {
 
 constexpr double foot = 0.3048, pound = 4.4482216152605, kip_per_foot = 1000.0 * pound / foot;
 
-struct Folder {
-  fs::path path = fs::temp_directory_path() / ("whirl-guy-" + std::to_string(::getpid()));
-  Folder() { fs::create_directories(path); }
-  ~Folder() { fs::remove_all(path); }
-};
-
-struct Ran {
-  int status;
-  std::string out, err;
-};
-
-std::string slurp(const fs::path& p) {
-  std::ifstream in(p);
-  std::stringstream s;
-  s << in.rdbuf();
-  return s.str();
-}
-
 std::string input(const std::string& name) { return std::string(WHIRL_SOURCE_DIR) + "/studies/" + name + ".toml"; }
-
-Ran program(const Folder& f, const std::string& arguments) {
-  const int code = std::system(("cd '" + f.path.string() + "' && " + WHIRL_PROGRAM + " " + arguments + " >out.txt 2>err.txt").c_str());
-  return {WIFEXITED(code) ? WEXITSTATUS(code) : 128, slurp(f.path / "out.txt"), slurp(f.path / "err.txt")};
-}
 
 }  // namespace
 

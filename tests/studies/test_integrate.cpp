@@ -9,34 +9,13 @@
 #include <sstream>
 
 #include "studies/result_file.hpp"
+#include "tests/studies/program.hpp"
 
 namespace fs = std::filesystem;
 using namespace whirl::studies;
+using namespace whirl::studies::tests;
 
 namespace {
-
-struct Folder {
-  fs::path path = fs::temp_directory_path() / ("whirl-integrate-" + std::to_string(::getpid()));
-  Folder() { fs::create_directories(path); }
-  ~Folder() { fs::remove_all(path); }
-};
-struct Ran {
-  int status;
-  std::string out, err;
-};
-
-std::string slurp(const fs::path& p) {
-  std::ifstream in(p);
-  std::stringstream s;
-  s << in.rdbuf();
-  return s.str();
-}
-
-Ran program(const Folder& f, const std::string& arguments, const std::string& before = "") {
-  const int code =
-      std::system(("cd '" + f.path.string() + "' && " + before + std::string(WHIRL_PROGRAM) + " " + arguments + " >out.txt 2>err.txt").c_str());
-  return {WIFEXITED(code) ? WEXITSTATUS(code) : 128 + WTERMSIG(code), slurp(f.path / "out.txt"), slurp(f.path / "err.txt")};
-}
 
 const std::string folder = std::string(WHIRL_SOURCE_DIR) + "/studies/";
 const std::string integrate = "run " + folder + "oresund-integrate.toml --set sweep.range=[] ";
@@ -166,4 +145,45 @@ TEST_CASE("integrate and basins: bad input gives one line, status 2, no file") {
     CHECK(r.err.find(expected) != std::string::npos);
     CHECK_FALSE(fs::exists(f.path / "x.h5"));
   }
+}
+
+TEST_CASE("integrate and basins: starts, axes and words follow the model") {
+  const Folder f;
+  const std::string stay =
+      "[cable]\nchord_length = 260.0\naxial_stiffness = 2.17e9\nchord_tension = 5.5e6\nmass_per_length = 81.05\ninclination_deg = 30.4\n"
+      "[model]\nkind = \"multi-mode\"\nout_of_plane_modes = 1\nin_plane_modes = 2\n[damping]\nout_of_plane = 0.02\nin_plane = 0.02\n"
+      "[support_motion]\namplitude = 0.5\n";
+  const std::string one = "[modal_model]\nfrequency = [1.0]\ndamping = [0.2]\n[[modal_model.force]]\nequation = 1\namplitude = 0.1\nharmonic = 1\n";
+  const auto write = [&](const std::string& name, const std::string& text) { std::ofstream(f / name) << text; };
+  const std::string grid = "[basins]\nomega = 1.5\nresolution = [3, 3]\nx_range = [-1.0, 1.0]\ny_range = [-1.0, 1.0]\n";
+
+  write("many.toml", "study = \"basins\"\n" + stay + grid);
+  Ran r = program(f, "run many.toml -o many.h5");
+  INFO(r.err);
+  REQUIRE(r.status == 0);
+  CHECK(ResultReader(f / "many.h5").texts_attribute("/basins", "axes") == std::vector<std::string>{"y1", "z1"});
+  write("one.toml", "study = \"basins\"\n" + one + grid);
+  REQUIRE(program(f, "run one.toml -o one.h5").status == 0);
+  CHECK(ResultReader(f / "one.h5").texts_attribute("/basins", "axes") == std::vector<std::string>{"q1", "q1'"});
+
+  // One coordinate: two starts, each once. A start given twice is run once.
+  write("single.toml", "study = \"integrate\"\n" + one + "[integrate]\nomega = [1.5]\n");
+  REQUIRE(program(f, "run single.toml -o single.h5").status == 0);
+  CHECK(ResultReader(f / "single.h5").text_column("/integrate/runs", "start").values == std::vector<std::string>{"q1 = 3", "q1 = 10"});
+  REQUIRE(program(f, "run single.toml --set integrate.starts=[1.0,2.0,1.0] -o twice.h5").status == 0);
+  CHECK(ResultReader(f / "twice.h5").text_column("/integrate/runs", "start").values == std::vector<std::string>{"q1 = 1", "q1 = 2"});
+
+  // Three modes: the sweep names the coordinate that starts to whirl; the recorded motion has its tension.
+  write("modes.toml", "study = \"integrate\"\n" + stay +
+                          "[integrate]\nomega = [1.62]\n[sweep]\nrange = [1.55, 1.62]\npoints = 3\ntolerance = 0.01\n"
+                          "directions = [\"up\"]\n");
+  r = program(f, "run modes.toml -o modes.h5");
+  INFO(r.err);
+  REQUIRE(r.status == 0);
+  const ResultReader file(f / "modes.h5");
+  CHECK(file.text_column("/integrate/runs", "start").values == std::vector<std::string>{"y1 = 3", "y1 = 10, z1 = 10"});
+  CHECK(count(r.err, "q1") == 0);
+  const auto T = file.column("/integrate/A1/series", "tension").values;
+  CHECK(*std::max_element(T.begin(), T.end()) > 5.5e6);
+  CHECK(*std::min_element(T.begin(), T.end()) < 5.5e6);
 }

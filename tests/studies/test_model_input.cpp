@@ -3,8 +3,10 @@
 
 #include "studies/equilibrium_model_input.hpp"
 #include "studies/modal_model_input.hpp"
+#include "tests/studies/refusal.hpp"
 
 using namespace whirl::studies;
+using namespace whirl::studies::tests;
 
 namespace {
 
@@ -51,23 +53,6 @@ mirrors = [["x", "y"]]
 )toml";
 
 Configuration read(const std::string& text) { return Configuration::from_text(text, "my.toml", schemas()); }
-
-std::string replaced(std::string text, const std::string& what, const std::string& by) {
-  const auto at = text.find(what);
-  REQUIRE(at != std::string::npos);
-  return text.replace(at, what.size(), by);
-}
-
-template <class Run>
-std::string message(Run&& run) {
-  try {
-    run();
-  } catch (const InputError& e) {
-    CHECK(std::string(e.what()).find('\n') == std::string::npos);
-    return e.what();
-  }
-  return "accepted";
-}
 
 std::string modal_complaint(const std::string& what, const std::string& by) {
   return message([&] { (void)modal_model_of(read(replaced(modal, what, by))); });

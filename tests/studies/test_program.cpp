@@ -13,37 +13,13 @@
 
 #include "studies/registry.hpp"
 #include "studies/result_file.hpp"
+#include "tests/studies/program.hpp"
 
 namespace fs = std::filesystem;
 using namespace whirl::studies;
+using namespace whirl::studies::tests;
 
 namespace {
-
-struct Ran {
-  int status;
-  std::string out, err;
-};
-
-struct Folder {
-  fs::path path = fs::temp_directory_path() / ("whirl-program-" + std::to_string(::getpid()));
-  Folder() { fs::create_directories(path); }
-  ~Folder() { fs::remove_all(path); }
-};
-
-std::string slurp(const fs::path& p) {
-  std::ifstream in(p);
-  std::stringstream s;
-  s << in.rdbuf();
-  return s.str();
-}
-
-Ran shell(const Folder& f, const std::string& command) {
-  const auto out = f.path / "out.txt", err = f.path / "err.txt";
-  const int code = std::system(("cd '" + f.path.string() + "' && " + command + " >" + out.string() + " 2>" + err.string()).c_str());
-  return {WIFEXITED(code) ? WEXITSTATUS(code) : 128 + WTERMSIG(code), slurp(out), slurp(err)};
-}
-
-Ran program(const Folder& f, const std::string& arguments) { return shell(f, std::string(WHIRL_PROGRAM) + " " + arguments); }
 
 const std::string oresund = std::string(WHIRL_SOURCE_DIR) + "/studies/oresund-superharmonic.toml";
 const std::string quick = " --set verification.enabled=false ";

@@ -13,29 +13,14 @@
 #include "studies/configuration.hpp"
 #include "studies/export.hpp"
 #include "studies/result_file.hpp"
+#include "tests/studies/program.hpp"
+#include "tests/studies/refusal.hpp"
 
 using namespace whirl::studies;
+using namespace whirl::studies::tests;
 namespace fs = std::filesystem;
 
 namespace {
-
-struct Folder {
-  fs::path path = fs::temp_directory_path() / ("whirl-test-result-" + std::to_string(::getpid()));
-  Folder() { fs::create_directories(path); }
-  ~Folder() { fs::remove_all(path); }
-  fs::path operator/(const std::string& name) const { return path / name; }
-};
-
-template <class Run>
-std::string message(Run&& run) {
-  try {
-    run();
-  } catch (const InputError& e) {
-    CHECK(std::string(e.what()).find('\n') == std::string::npos);
-    return e.what();
-  }
-  return "accepted";
-}
 
 std::string refusal_to_read(const fs::path& path) {
   return message([&] { ResultReader reader(path); });
