@@ -12,9 +12,9 @@ namespace {
 
 Field<double> displacements(const InPlaneGalerkin& g, double kappa, const Vector& q) {
   const auto at = g.nodal<double>(kappa, q, Eigen::Vector4d::Zero());
-  Field<double> f{g.mesh().x1, g.mesh().x2, Matrix(at.U.size(), 2)};
-  f.coefficients.col(0) = g.mesh().project<double>(at.U);
-  f.coefficients.col(1) = g.mesh().project<double>(at.V);
+  Field<double> f{g.mesh().coordinate, Matrix(at.U.size(), 2)};
+  f.coefficients.col(0) = g.mesh().project(at.U);
+  f.coefficients.col(1) = g.mesh().project(at.V);
   return f;
 }
 

@@ -64,22 +64,22 @@ ForcedMotion ForcedSolver::at(double omega, const EndMotion& ends) const {
   const Eigen::VectorXcd q = reduced_solve(K_ + L1.real() * MU_ + L2.real() * MV_, L1.imag() * MU_ + L2.imag() * MV_, load);
   motion.in_plane = field_of<Complex>(g_.mesh(), g_.nodal<Complex>(cable_.kappa, q, e), L1, L2);
   const Eigen::Vector2cd w(ends.W1, ends.W2);
-  motion.lateral = {cable_.x1, cable_.x2, Eigen::MatrixXcd::Zero(lateral_.mesh().t.size(), 2)};
+  motion.lateral = {lateral_.mesh().coordinate, Eigen::MatrixXcd::Zero(lateral_.mesh().t.size(), 2)};
   if (w.isZero(0.0)) return motion;
   const int n = lateral_.size();
   Eigen::VectorXcd all(n + 2);
   all.tail(2) = w;
   all.head(n) = reduced_solve(lateral_.stiffness() + L3.real() * lateral_.mass(), L3.imag() * lateral_.mass(),
                               -(lateral_.lift_stiffness() * w + L3 * (lateral_.lift_mass() * w)));
-  motion.lateral.coefficients.col(0) = lateral_.mesh().project<Complex>(lateral_.W() * all);
-  motion.lateral.coefficients.col(1) = lateral_.mesh().project<Complex>(lateral_.W_slope() * all);
+  motion.lateral.coefficients.col(0) = lateral_.mesh().project((lateral_.W() * all).eval());
+  motion.lateral.coefficients.col(1) = lateral_.mesh().project((lateral_.W_slope() * all).eval());
   return motion;
 }
 
 PeakFinder::PeakFinder(const Mesh& mesh) {
   const auto n = mesh.t.size();
   const Vector t = Vector::LinSpaced(std::max<Eigen::Index>(200, 4 * n), -1.0, 1.0);
-  x_ = (mesh.x_m + mesh.m * t.array()).cwiseMax(mesh.x1).cwiseMin(mesh.x2);
+  x_ = t.unaryExpr([&](double s) { return mesh.coordinate.x(s); });
   c_ = x_.array().cosh();
   legendre_ = legendre_values(t, static_cast<int>(n));
 }

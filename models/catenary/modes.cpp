@@ -128,9 +128,9 @@ Mode lateral_mode(const LateralGalerkin& g, const Mirror& mirror, double omega, 
   W *= scale;
   slope *= scale;
   mode.omega = omega;
-  mode.field = {g.mesh().x1, g.mesh().x2, Matrix(W.size(), 2)};
-  mode.field.coefficients.col(0) = g.mesh().project<double>(W);
-  mode.field.coefficients.col(1) = g.mesh().project<double>(slope);
+  mode.field = {g.mesh().coordinate, Matrix(W.size(), 2)};
+  mode.field.coefficients.col(0) = g.mesh().project(W);
+  mode.field.coefficients.col(1) = g.mesh().project(slope);
   mode.odd_share = mirror.odd_share(mode.field, Quantity::W);
   mode.kind = kind_of(mode.odd_share);
   mode.modal_mass = g.mesh().weight.cwiseProduct(g.mesh().c).dot(W.cwiseAbs2());
