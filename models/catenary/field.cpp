@@ -24,7 +24,7 @@ Vector even_in_travel_time(const Mesh& mesh) {
     const Vector at = legendre_integrals(legendre_values(t, n), n - 1) * a.head(n - 1);
     double largest = 0.0;
     for (int i = 0; i < n; ++i) {
-      const double change = (wanted[i] - at[i]) / (std::sqrt(std::cosh(map.x(t[i]))) * map.slope(t[i]));
+      const double x = map.x(t[i]), change = (wanted[i] - at[i]) / (std::sqrt(std::cosh(x)) * map.slope(x));
       t[i] += change;
       largest = std::max(largest, std::abs(change));
     }

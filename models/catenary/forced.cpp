@@ -12,21 +12,6 @@ namespace {
 
 using Complex = std::complex<double>;
 
-// Half waves below a frequency: w int sqrt(cosh x) dx / pi transversally, w sqrt(kappa) int cosh x dx / pi along the cable.
-int half_waves(const CoreCable& c, double omega) {
-  const Mesh mesh(c.x1, c.x2, 8);
-  const double across = mesh.weight.dot(mesh.c.cwiseSqrt()), along = std::sqrt(c.kappa) * (std::sinh(c.x2) - std::sinh(c.x1));
-  return 2 + static_cast<int>(omega * (across + along) / std::numbers::pi);
-}
-
-int functions_up_to(const CoreCable& c, double omega) {
-  if (!(omega >= 0.0 && std::isfinite(omega))) throw std::invalid_argument(fmt::format("a frequency must be >= 0, got {:g}", omega));
-  if (!(c.x1 < c.x2)) throw std::invalid_argument("the ends of a cable must satisfy x1 < x2");
-  const int n = functions_for(0.5 * (c.x2 - c.x1), half_waves(c, omega)) + 8;
-  if (n > 1000) throw std::invalid_argument(fmt::format("the frequency {:g} sqrt(g/a) has too many waves along the cable", omega));
-  return n;
-}
-
 Eigen::VectorXcd reduced_solve(const Matrix& re, const Matrix& im, const Eigen::VectorXcd& right) {
   Eigen::MatrixXcd A(re.rows(), re.cols());
   A.real() = re;
@@ -44,7 +29,7 @@ TangentNormal turned(double x, Complex horizontal, Complex vertical) {
 ForcedSolver::ForcedSolver(const CoreCable& c, double largest_omega)
     : cable_(c),
       largest_omega_(largest_omega),
-      g_(c.x1, c.x2, functions_up_to(c, largest_omega)),
+      g_(c.x1, c.x2, functions_up_to(c, largest_omega) + 8),
       lateral_(c.x1, c.x2, g_.functions()),
       K_(g_.stiffness(c.kappa)),
       MU_(g_.mass(c.kappa, 1.0, 0.0)),

@@ -64,7 +64,7 @@ InPlaneGalerkin::InPlaneGalerkin(double x1, double x2, int n, bool elastic) : n_
 void InPlaneGalerkin::add_lifts(Matrix& Q, Matrix& Q_t, const Matrix& phi_integral, const Matrix& p_integral) {
   const double sixth = 1.0 / std::sqrt(6.0);
   const Coordinate& map = mesh_.coordinate;
-  const double one = map.slope(-1.0) / std::cosh(mesh_.x1), two = map.slope(1.0) / std::cosh(mesh_.x2);
+  const double one = map.slope(mesh_.x1) / std::cosh(mesh_.x1), two = map.slope(mesh_.x2) / std::cosh(mesh_.x2);
   const Vector phi = ((1.0 - mesh_.t.array().square()) * 1.5 * sixth).matrix(), phi_t = (-3.0 * sixth) * mesh_.t;
   for (int i = 0; i < lifts; ++i) {
     const double U1 = i == 0, V1 = i == 1, U2 = i == 2, V2 = i == 3, Q1 = V1 * one, Q2 = V2 * two;
@@ -171,10 +171,13 @@ std::vector<int> LateralGalerkin::indices(Parity parity, int largest_k) const {
   return chosen;
 }
 
-Matrix pick(const Matrix& a, const std::vector<int>& rows, const std::vector<int>& columns) {
-  Matrix b(rows.size(), columns.size());
-  for (std::size_t j = 0; j < columns.size(); ++j)
-    for (std::size_t i = 0; i < rows.size(); ++i) b(i, j) = a(rows[i], columns[j]);
+Matrix pick(const Matrix& a, const std::vector<int>& chosen) {
+  const auto n = Eigen::Index(chosen.size());
+  Matrix b(n, n);
+  for (Eigen::Index j = 0; j < n; ++j) {
+    const auto column = a.col(chosen[std::size_t(j)]);
+    for (Eigen::Index i = 0; i < n; ++i) b(i, j) = column[chosen[std::size_t(i)]];
+  }
   return b;
 }
 

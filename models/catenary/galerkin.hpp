@@ -113,7 +113,7 @@ class LateralGalerkin {
   Matrix W_, slope_, K_, M_, K_lift_, M_lift_;
 };
 
-/// Rows and columns of a matrix.
-Matrix pick(const Matrix& a, const std::vector<int>& rows, const std::vector<int>& columns);
+/// Rows and columns of a symmetric matrix.
+Matrix pick(const Matrix& a, const std::vector<int>& chosen);
 
 }  // namespace whirl::models::catenary
