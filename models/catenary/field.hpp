@@ -1,11 +1,14 @@
 #pragma once
-/// Displacements and forces along the cable as Legendre series in the graded coordinate of mesh.hpp: known at any point, not only where they were computed.
+/// Displacements and forces along the cable as Legendre series in the graded coordinate of mesh.hpp: known at any point, not only where they were
+/// computed.
 ///
 /// In plane the columns are U, V, N, T; N/c is the change of slope. Out of plane they are W, W_x. Real for modes, complex for damped modes and
 /// forced motion. Units as in galerkin.hpp: displacements in a, forces in H.
 ///
 ///     Field<double> f = ...;
 ///     auto v = f.at(x, Quantity::V);                 // x between the ends
+
+#include <array>
 
 #include "models/catenary/galerkin.hpp"
 
@@ -26,19 +29,33 @@ struct Field {
   Eigen::Matrix<S, Eigen::Dynamic, Eigen::Dynamic> at(In x) const { return table(x).template cast<S>() * coefficients; }
   /// One point, by Clenshaw's recurrence: nothing is allocated.
   S at(double x, Quantity quantity) const {
-    const double t = coordinate.t(x);
-    const auto a = coefficients.col(static_cast<int>(quantity));
-    S b1(0.0), b2(0.0);
-    for (Eigen::Index k = a.size() - 1; k > 0; --k) {
-      const double n = static_cast<double>(k);
-      const S b = a[k] + ((2.0 * n + 1.0) / (n + 1.0) * t) * b1 - ((n + 1.0) / (n + 2.0)) * b2;
-      b2 = b1;
-      b1 = b;
-    }
-    return a[0] + t * b1 - 0.5 * b2;
+    std::array<S, 1> value;
+    clenshaw(coordinate.t(x), coefficients.data() + static_cast<int>(quantity) * coefficients.rows(), value);
+    return value[0];
+  }
+  /// The first `columns` quantities at one point.
+  template <std::size_t columns>
+  std::array<S, columns> first_at(double x) const {
+    std::array<S, columns> values;
+    clenshaw(coordinate.t(x), coefficients.data(), values);
+    return values;
   }
 
  private:
+  template <std::size_t columns>
+  void clenshaw(double t, const S* a, std::array<S, columns>& values) const {
+    const auto rows = coefficients.rows();
+    std::array<S, columns> b1{}, b2{};
+    for (Eigen::Index k = rows - 1; k > 0; --k) {
+      const double n = static_cast<double>(k), first = (2.0 * n + 1.0) / (n + 1.0) * t, second = (n + 1.0) / (n + 2.0);
+      for (std::size_t j = 0; j < columns; ++j) {
+        const S b = a[k + Eigen::Index(j) * rows] + first * b1[j] - second * b2[j];
+        b2[j] = b1[j];
+        b1[j] = b;
+      }
+    }
+    for (std::size_t j = 0; j < columns; ++j) values[j] = a[Eigen::Index(j) * rows] + t * b1[j] - 0.5 * b2[j];
+  }
   Matrix table(In x) const {
     return legendre_values(x.unaryExpr([this](double s) { return coordinate.t(s); }), static_cast<int>(coefficients.rows()));
   }

@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <numbers>
+#include <numeric>
 
 namespace whirl::models::catenary {
 namespace {
@@ -46,18 +47,17 @@ InPlaneGalerkin::InPlaneGalerkin(double x1, double x2, int n, bool elastic) : n_
   F_ = g.cwiseQuotient(J).asDiagonal() * Q_t;
   F_ += g_t.cwiseQuotient(J).asDiagonal() * Q;
   F_ += c.cwiseInverse().asDiagonal() * U_;
-  KF_ = gram(F_, mesh_.weight);
-  MU_ = gram(U_, mesh_.weight.cwiseProduct(c));
-  MV_ = gram(V_, mesh_.weight.cwiseProduct(c));
-  if (!elastic) return;
-  const Matrix stretch = mesh_.weight.cwiseQuotient(c).cwiseSqrt().asDiagonal() * R_.rightCols(n + 1);
-  KR_.setZero(n + 1, n + 1);
-  KR_.selfadjointView<Eigen::Lower>().rankUpdate(stretch.transpose());
-  KR_.triangularView<Eigen::StrictlyUpper>() = KR_.transpose();
-  if (!mesh_.coordinate.level()) return;
-  for (int j = 0; j <= n; ++j)
-    for (int i = 0; i <= n; ++i)
-      if ((order(n + i) - order(n + j)) % 2 != 0) KR_(i, j) = 0.0;
+  std::vector<int> every(std::size_t(functions), 0), turning(every.begin(), every.begin() + n), stretching;
+  std::iota(every.begin(), every.end(), 0);
+  std::iota(turning.begin(), turning.end(), 0);  // functions with Q, and with R
+  if (elastic) {
+    turning.push_back(2 * n);
+    stretching.assign(every.begin() + n, every.end());
+  }
+  KF_ = gram(F_, mesh_.weight, every);
+  MU_ = gram(U_, mesh_.weight.cwiseProduct(c), every);
+  MV_ = gram(V_, mesh_.weight.cwiseProduct(c), turning);
+  if (elastic) KR_ = gram(R_, mesh_.weight.cwiseQuotient(c), stretching).bottomRightCorner(n + 1, n + 1);
 }
 
 // Q = alpha + beta t + gamma phi_0 with c Q/J = V at the ends, U1 + int Q dt = U2.
@@ -76,28 +76,36 @@ void InPlaneGalerkin::add_lifts(Matrix& Q, Matrix& Q_t, const Matrix& phi_integr
   }
 }
 
-// int w a_i a_j dx: functions by functions, functions by lifts. On a level cable the parities do not meet and half the points are enough.
-Matrix InPlaneGalerkin::gram(const Matrix& a, const Vector& weight) const {
-  const auto functions = a.cols() - lifts;
-  Matrix g = Matrix::Zero(functions, functions + lifts);
-  const Matrix b = weight.cwiseSqrt().asDiagonal() * a;
-  g.rightCols(lifts).noalias() = b.leftCols(functions).transpose() * b.rightCols(lifts);
-  if (!mesh_.coordinate.level()) {
-    g.leftCols(functions).selfadjointView<Eigen::Lower>().rankUpdate(b.leftCols(functions).transpose());
-  } else {
-    const auto half = b.rows() / 2;  // the middle point, if there is one, counts once
-    for (const Parity parity : {Parity::symmetric, Parity::antisymmetric}) {
-      const auto chosen = indices(elastic_ ? 1.0 : 0.0, parity);
-      Matrix part(b.rows() - half, Eigen::Index(chosen.size())), products = Matrix::Zero(part.cols(), part.cols());
-      for (std::size_t j = 0; j < chosen.size(); ++j) part.col(Eigen::Index(j)) = std::numbers::sqrt2 * b.col(chosen[j]).head(part.rows());
-      if (b.rows() % 2 == 1) part.bottomRows(1) *= std::sqrt(0.5);
-      products.selfadjointView<Eigen::Lower>().rankUpdate(part.transpose());
-      for (std::size_t j = 0; j < chosen.size(); ++j)
-        for (std::size_t i = j; i < chosen.size(); ++i) g(chosen[i], chosen[j]) = products(Eigen::Index(i), Eigen::Index(j));
-    }
+// int w a_i a_j dx for some functions, zero for the others. On a level cable the parities do not meet and half the points are enough.
+Matrix InPlaneGalerkin::gram(const Matrix& a, const Vector& weight, const std::vector<int>& chosen) const {
+  const bool level = mesh_.coordinate.level();
+  const auto points = level ? a.rows() - a.rows() / 2 : a.rows();
+  Vector root = weight.head(points).cwiseSqrt();
+  if (level) root *= std::numbers::sqrt2;
+  if (level && a.rows() % 2 == 1) root[points - 1] *= std::sqrt(0.5);  // the middle point counts once
+  Matrix g = Matrix::Zero(elastic_ ? 2 * n_ + 1 : n_, elastic_ ? 2 * n_ + 1 : n_), b(points, Eigen::Index(chosen.size())), products;
+  std::vector<int> part;
+  for (int parity = 0; parity < (level ? 2 : 1); ++parity) {
+    part.clear();
+    for (const int i : chosen)
+      if (!level || order(i) % 2 == parity) part.push_back(i);
+    const auto size = Eigen::Index(part.size());
+    for (Eigen::Index j = 0; j < size; ++j) b.col(j) = root.cwiseProduct(a.col(part[std::size_t(j)]).head(points));
+    products.setZero(size, size);
+    products.selfadjointView<Eigen::Lower>().rankUpdate(b.leftCols(size).transpose());
+    for (Eigen::Index j = 0; j < size; ++j)
+      for (Eigen::Index i = j; i < size; ++i) {
+        const auto row = part[std::size_t(i)], column = part[std::size_t(j)];
+        g(row, column) = g(column, row) = products(i, j);
+      }
   }
-  g.leftCols(functions).triangularView<Eigen::StrictlyUpper>() = g.leftCols(functions).transpose();
   return g;
+}
+
+// int w a_i a_j dx for functions i and lifts j.
+Matrix InPlaneGalerkin::lift_work(const Matrix& a, const Vector& weight, double kappa) const {
+  const Matrix lifted = weight.asDiagonal() * a.rightCols(lifts);
+  return scale(kappa).asDiagonal() * (a.leftCols(size(kappa)).transpose() * lifted);
 }
 
 Vector InPlaneGalerkin::scale(double kappa, int order) const {
@@ -132,11 +140,11 @@ Matrix InPlaneGalerkin::mass(double kappa, double tangential, double normal) con
 Matrix InPlaneGalerkin::stiffness_slope(double kappa, int order) const { return scaled(KF_, kappa, order); }
 Matrix InPlaneGalerkin::mass_slope(double kappa, int order) const { return scaled(MU_, kappa, order) + scaled(MV_, kappa, order); }
 
-Matrix InPlaneGalerkin::lift_stiffness(double kappa) const { return scale(kappa).asDiagonal() * KF_.topRightCorner(size(kappa), lifts); }
+Matrix InPlaneGalerkin::lift_stiffness(double kappa) const { return lift_work(F_, mesh_.weight, kappa); }
 
 Matrix InPlaneGalerkin::lift_mass(double kappa, double tangential, double normal) const {
-  const int n = size(kappa);
-  return scale(kappa).asDiagonal() * (tangential * MU_.topRightCorner(n, lifts) + normal * MV_.topRightCorner(n, lifts));
+  const Vector weight = mesh_.weight.cwiseProduct(mesh_.c);
+  return tangential * lift_work(U_, weight, kappa) + normal * lift_work(V_, weight, kappa);
 }
 
 std::vector<int> InPlaneGalerkin::indices(double kappa, Parity parity, int largest_k) const {

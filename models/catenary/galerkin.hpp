@@ -84,14 +84,14 @@ class InPlaneGalerkin {
   Matrix scaled(const Matrix& a, double kappa, int order) const;
 
   void add_lifts(Matrix& Q, Matrix& Q_t, const Matrix& phi_integral, const Matrix& p_integral);
-  Matrix gram(const Matrix& a, const Vector& weight) const;
+  Matrix gram(const Matrix& a, const Vector& weight, const std::vector<int>& chosen) const;
+  Matrix lift_work(const Matrix& a, const Vector& weight, double kappa) const;
 
   int n_;
   bool elastic_;
   Mesh mesh_;
   Matrix U_, V_, F_, R_;
-  Matrix KF_, MU_, MV_;  // all functions, and the lifts in four columns more
-  Matrix KR_;            // B and C
+  Matrix KF_, MU_, MV_, KR_;  // KR_: B and C alone
 };
 
 /// Out of plane: K = int W_x^2 dx, M = int c W^2 dx in the functions phi_0 ... phi_{n-1} of t; the lifts are the straight lines of unit W1, W2.

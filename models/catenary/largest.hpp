@@ -25,11 +25,15 @@ double largest_of_humps(const Mesh& mesh, const Vector& samples, At&& at) {
     double x = mesh.x[i];
     for (int step = 0; step < 3; ++step) {
       const Hump h = at(x);
-      const double next = x - h.slope / h.curvature;
       top = std::max(top, h.value);
-      if (!(h.curvature < 0.0 && next > mesh.x[i - 1] && next < mesh.x[i + 1])) break;
-      top = std::max(top, h.value - 0.5 * h.slope * h.slope / h.curvature * (step == 2 ? 1.0 : 0.0));
-      x = next;
+      const double move = -h.slope / h.curvature;
+      if (!(h.curvature < 0.0 && x + move > mesh.x[i - 1] && x + move < mesh.x[i + 1])) break;
+      x += move;
+      const double above = 0.5 * h.slope * move;  // what the next step finds, to the third power of the move
+      if (above < 1e-6 * h.value) {
+        top = std::max(top, h.value + above);
+        break;
+      }
     }
   }
   return std::sqrt(top);
@@ -40,7 +44,7 @@ double largest_displacement(const Mesh& mesh, const Field<S>& f, const InPlaneGa
   const auto product = [](S a, S b) { return std::real(std::conj(std::complex<double>(a)) * std::complex<double>(b)); };
   return largest_of_humps(mesh, nodal.U.cwiseAbs2() + nodal.V.cwiseAbs2(), [&](double x) -> Hump {
     const double c = std::cosh(x), s = std::sinh(x);
-    const S U = f.at(x, Quantity::U), V = f.at(x, Quantity::V), N = f.at(x, Quantity::N), T = f.at(x, Quantity::T);
+    const auto [U, V, N, T] = f.template first_at<4>(x);
     const S U_x = V / c + kappa * c * T, V_x = N - U / c, T_x = L1 * c * U + N / c;
     const S U_xx = V_x / c - V * (s / (c * c)) + kappa * (s * T + c * T_x), V_xx = L2 * c * V - T / c - U_x / c + U * (s / (c * c));
     return {product(U, U) + product(V, V), 2.0 * (product(U, U_x) + product(V, V_x)),
@@ -51,7 +55,7 @@ double largest_displacement(const Mesh& mesh, const Field<S>& f, const InPlaneGa
 /// Out of plane: W_xx = L3 c W.
 inline double largest_lateral(const Mesh& mesh, const Field<double>& f, const Vector& W, double L3) {
   return largest_of_humps(mesh, W.cwiseAbs2(), [&](double x) -> Hump {
-    const double w = f.at(x, Quantity::W), slope = f.at(x, Quantity::W_slope);
+    const auto [w, slope] = f.first_at<2>(x);
     return {w * w, 2.0 * w * slope, 2.0 * (slope * slope + L3 * std::cosh(x) * w * w)};
   });
 }

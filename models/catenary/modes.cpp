@@ -12,7 +12,7 @@ namespace whirl::models::catenary {
 namespace {
 
 constexpr double small_tail = 1e-9;  // a frequency is off by its square
-constexpr int finer = 12;            // functions the count has beyond the solution
+constexpr int finer = 8;             // functions the count has beyond the solution
 constexpr int extra = 4;             // frequencies beyond those wanted, so that a gap is found
 constexpr int everything = 1 << 30;
 
