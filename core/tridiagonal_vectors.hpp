@@ -1,7 +1,7 @@
 #pragma once
 /// Some eigenvectors of a symmetric tridiagonal matrix whose eigenvalues are known, by inverse iteration.
 ///
-///     (T - mu_j) y = z,  z = y / |y|,     orthogonal to the vectors before it whose eigenvalues stand within 1e-3 |T|   [Jessup-Ipsen, dstein]
+///     (T - mu_j) y = z,  z = y / |y|,     orthogonal to the vectors before it whose eigenvalues stand within 1e-3 |T|   (as in LAPACK)
 ///
 /// Equal eigenvalues are told apart by a few roundings. A vector is accepted if its residual is of the size of rounding.
 ///

@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "core/parallel.hpp"
+#include "models/catenary/asymptotic.hpp"
 #include "models/catenary/backbone.hpp"
 #include "models/catenary/gale_series.hpp"
 #include "studies/catenary_keys.hpp"
@@ -169,6 +170,10 @@ void write_sweep(ResultFile& file, const Configuration& c, double h, bool latera
   for (int k = 1; k <= count; ++k) t.push_back({fmt::format("w{}", k), "-", "omega / sqrt(g/a)", std::vector<double>(std::size_t(points))});
   if (lateral)
     t.push_back({"pendulum", "-", "the rigid cable swinging about its chord, Rayleigh's estimate of w1", std::vector<double>(std::size_t(points))});
+  const bool asymptotic = !lateral && h == 0.0;
+  for (int k = 1; asymptotic && k <= count; ++k)
+    t.push_back({fmt::format("asymptotic{}", k), "-", "short-wave formula for omega / sqrt(g/a); nan where it has no root",
+                 std::vector<double>(std::size_t(points))});
   std::atomic<int> unresolved{0};
   parallel_for(std::size_t(points), [&](std::size_t i) {
     const double sag = range[0] + (range[1] - range[0]) * double(i) / (points - 1);
@@ -179,7 +184,10 @@ void write_sweep(ResultFile& file, const Configuration& c, double h, bool latera
     if (!set.complete()) ++unresolved;
     t[0].values[i] = sag;
     if (lateral) t.back().values[i] = pendulum_estimate(g);
-    for (std::size_t k = 0; k < std::size_t(count); ++k) t[k + 1].values[i] = k < set.modes.size() ? set.modes[k].omega : std::nan("");
+    for (std::size_t k = 0; k < std::size_t(count); ++k) {
+      t[k + 1].values[i] = k < set.modes.size() ? set.modes[k].omega : std::nan("");
+      if (asymptotic) t[std::size_t(count) + k + 1].values[i] = asymptotic_frequency(g.m, int(k) + 1).value_or(std::nan(""));
+    }
   });
   const std::string group = fmt::format("/sweep/{}/h{:g}", plane_name(lateral), h);
   file.table(group, t);
