@@ -23,7 +23,7 @@ const GeometryKey quantities[] = {
     {"cable.sag", "sag", "m", "f, vertical distance from the chord to the cable at half the span", &GeometryInput::sag, std::nullopt},
     {"cable.horizontal_tension", "horizontal tension", "N", "H, horizontal part of the static tension", &GeometryInput::horizontal_tension,
      std::nullopt},
-    {"cable.upper_tension", "tension at the upper end", "N", "static tension at the upper support, with span and height_difference",
+    {"cable.upper_tension", "tension at the upper end", "N", "static tension at the upper support; of two such cables the taut one",
      &GeometryInput::upper_tension, std::nullopt},
 };
 

@@ -1,6 +1,7 @@
 #include "studies/catenary_modes_study.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -10,6 +11,7 @@
 #include "models/catenary/asymptotic.hpp"
 #include "models/catenary/backbone.hpp"
 #include "models/catenary/gale_series.hpp"
+#include "models/catenary/reduced.hpp"
 #include "studies/catenary_keys.hpp"
 #include "studies/common_keys.hpp"
 
@@ -36,6 +38,17 @@ Schema schema() {
   s.add({.name = "series.compare",
          .description = "solve again by the source's series, inextensible cable with |xi| < 4 at both ends, and compare",
          .default_value = false});
+  const auto reduced = [&](const char* name, const char* description) {
+    s.add({.name = name,
+           .description = description,
+           .default_value = std::int64_t{0},
+           .lower = 0,
+           .upper = 12,
+           .closed_lower = true,
+           .closed_upper = true});
+  };
+  reduced("reduced.out_of_plane", "lowest modes out of plane of a nonlinear model on catenary modes, written as [modal_model]");
+  reduced("reduced.in_plane", "its lowest modes in plane, after those out of plane; both 0: no such model");
   s.add({.name = "sweep.sag_parameter",
          .description = "range of b/sqrt(l^2 - h^2), 1 taut, over which frequencies in sqrt(g/a) are tabulated",
          .default_value = std::vector<double>{0.5, 0.98},
@@ -78,7 +91,16 @@ HangingCable setup(const Configuration& c) {
   return cable;
 }
 
-std::vector<std::string> check(const Configuration& c) { return hanging_cable_warnings(setup(c)); }
+ReducedOptions reduced_options(const Configuration& c) {
+  const ReducedOptions o{int(c.integer("reduced.out_of_plane")), int(c.integer("reduced.in_plane"))};
+  if (o.out_of_plane + o.in_plane > 12) throw c.error("reduced.in_plane", "with reduced.out_of_plane at most 12 modes");
+  return o;
+}
+
+std::vector<std::string> check(const Configuration& c) {
+  (void)reduced_options(c);
+  return hanging_cable_warnings(setup(c));
+}
 
 const char* plane_name(bool lateral) { return lateral ? "out_of_plane" : "in_plane"; }
 
@@ -242,6 +264,41 @@ std::string json(const Found found[2], double unit) {
   return fmt::format("{{\n  \"modes\": [{}\n  ],\n  \"complete\": {}\n}}\n", rows, found[0].set.complete() && found[1].set.complete());
 }
 
+// The model as text for a study file: [modal_model] of any kind that integrates or balances.
+std::string modal_model_text(const models::ModalModel& m, const ReducedModel& r) {
+  std::string text = fmt::format("[modal_model]                       # {} modes out of plane, then {} in plane; largest displacements [m]\n",
+                                 r.out_of_plane, r.in_plane);
+  text += fmt::format("frequency = [{:.12g}]\ndamping = [{:.6g}]\nterm = [\n", fmt::join(m.frequency, ", "), fmt::join(m.damping, ", "));
+  for (const auto& t : m.terms)
+    text += fmt::format("  {{ equation = {}, coefficient = {:.10g}, powers = [{}] }},\n", t.equation + 1, t.coefficient, fmt::join(t.powers, ", "));
+  return text + "]\n";
+}
+
+void write_reduced(ResultFile& file, const HangingCable& cable, const ReducedOptions& o, RunContext& context) {
+  if (o.out_of_plane + o.in_plane == 0) return;
+  CoreCable core = core_of(cable);
+  core.kappa = std::max(core.kappa, 1e-7);  // stands for an inextensible cable
+  const ReducedModel r = reduced_model(core, o);
+  const models::ModalModel m = in_si_units(r, cable);
+  std::vector<Column> t{{"equation", "-", "number of the coordinate, from 1", {}}, {"coefficient", "1/s^2/m^k", "on the left-hand side", {}}};
+  for (int i = 0; i < m.size(); ++i) t.push_back({fmt::format("power{}", i + 1), "-", fmt::format("of q{}", i + 1), {}});
+  for (const auto& term : m.terms) {
+    t[0].values.push_back(term.equation + 1.0);
+    t[1].values.push_back(term.coefficient);
+    for (std::size_t i = 0; i < term.powers.size(); ++i) t[i + 2].values.push_back(term.powers[i]);
+  }
+  file.table("/reduced", t);
+  file.text("/reduced", "modal_model", modal_model_text(m, r));
+  file.attribute("/reduced", "first_left_out", r.first_left_out * frequency_unit(cable));
+  if (!context.quiet) {
+    fmt::print(stderr,
+               "nonlinear model of {} modes: {} terms; lowest frequency in plane without inertia {:.6g} rad/s; relative change of frequency per m^2:",
+               m.size(), m.terms.size(), r.first_left_out * frequency_unit(cable));
+    for (int i = 0; i < m.size(); ++i) fmt::print(stderr, " {:.4g}", backbone_curvature(r, i) / (cable.shape.a * cable.shape.a));
+    fmt::print(stderr, "\n");
+  }
+}
+
 ExitStatus run(const Configuration& c, RunContext& context) {
   const HangingCable cable = setup(c);
   for (const auto& w : hanging_cable_warnings(cable)) context.warn(w);
@@ -275,6 +332,7 @@ ExitStatus run(const Configuration& c, RunContext& context) {
     if (!context.quiet) fmt::print(stderr, "{}", text(f, unit, lateral));
     if (c.flag("series.compare")) write_series(file, cable, count, lateral, context, failures);
   }
+  write_reduced(file, cable, reduced_options(c), context);
   file.flush();
   for (const double h : c.numbers("sweep.height_over_span"))
     for (const bool lateral : {false, true})

@@ -123,6 +123,30 @@ TEST_CASE("veering: crossings by both ways, least gap, hybrid modes") {
   CHECK(file.has("/fan/h0"));
 }
 
+TEST_CASE("catenary-modes: a nonlinear model that other kinds take; the asymptotic formula in the sweep") {
+  const Folder f;
+  const Ran r = program(f, "run " + study("catenary-modes") +
+                               "--set cable.height_difference=20 --set cable.length=160 --set drag.normal=0.2 --set drag.lateral=0.2 "
+                               "--set reduced.out_of_plane=1 --set reduced.in_plane=3 --set sweep.height_over_span=[0] --set sweep.points=3 -o m.h5");
+  INFO(r.err);
+  REQUIRE(r.status == 0);
+  ResultReader file(f.path / "m.h5");
+  const auto exact = file.column("/sweep/in_plane/h0", "w6").values, formula = file.column("/sweep/in_plane/h0", "asymptotic6").values;
+  for (std::size_t i = 0; i < 3; ++i) CHECK(formula[i] == Approx(exact[i]).epsilon(1e-3));
+  const std::string model = file.text("/reduced", "modal_model"),
+                    example = slurp(study("deep-cable-swing").substr(0, study("deep-cable-swing").size() - 1));
+  CHECK(example.find(model.substr(0, model.find("term"))) != std::string::npos);  // the example is this model
+  std::ofstream(f.path / "p.toml") << "study = \"periodic\"\n"
+                                   << model << "force = [{ equation = 3, amplitude = 0.2 }]\n[continuation]\nrange = [0.85, 1.3]\n";
+  const Ran p = program(f, "run p.toml --json -o p.h5");
+  INFO(p.err);
+  REQUIRE(p.status == 0);
+  const auto at = numbers(p.out, "omega");  // the swing begins at half the frequency on either side of twice its own, 2 x 0.47468 rad/s
+  for (const double edge : {0.94171764894, 0.97871996656})
+    CHECK(std::any_of(at.begin(), at.end(), [&](double w) { return std::abs(w - edge) < 1e-7; }));
+  CHECK(program(f, "run " + study("catenary-modes") + "--set reduced.out_of_plane=7 --set reduced.in_plane=6 -o x.h5").status == 2);
+}
+
 TEST_CASE("hanging cables: bad input gives one clear line and nothing else") {
   const Folder f;
   const std::string modes = "run " + study("catenary-modes"), forced = "run " + study("catenary-forced");
