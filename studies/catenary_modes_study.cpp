@@ -11,8 +11,8 @@
 #include "models/catenary/asymptotic.hpp"
 #include "models/catenary/backbone.hpp"
 #include "models/catenary/gale_series.hpp"
-#include "models/catenary/reduced.hpp"
 #include "studies/catenary_keys.hpp"
+#include "studies/catenary_modes_output.hpp"
 #include "studies/common_keys.hpp"
 
 namespace whirl::studies {
@@ -106,17 +106,19 @@ const char* plane_name(bool lateral) { return lateral ? "out_of_plane" : "in_pla
 
 struct Found {
   ModeSet set;
-  std::vector<std::complex<double>> lambda;  // with drag, in sqrt(g/a)
+  std::vector<std::complex<double>> lambda;  // with drag, in sqrt(g/a), one a mode; empty if some modes in plane do not oscillate
+  DampedSet damped;                          // in plane
 };
 
 Found find(const CoreCable& core, int count, bool lateral) {
   const ModeOptions options{.count = count};
-  Found f{lateral ? out_of_plane_modes(core, options) : in_plane_modes(core, options), {}};
+  Found f{lateral ? out_of_plane_modes(core, options) : in_plane_modes(core, options), {}, {}};
   if (lateral && core.eta3 > 0.0)
     for (const auto& mode : f.set.modes) f.lambda.push_back(damped_root(mode.omega, core.eta3));
   if (!lateral && (core.eta1 > 0.0 || core.eta2 > 0.0)) {
-    const DampedSet damped = damped_modes(core, {.count = count, .functions = f.set.functions, .shapes = false});
-    for (const auto& mode : damped.modes) f.lambda.push_back(mode.lambda);
+    f.damped = damped_modes(core, {.count = count, .functions = f.set.functions});
+    if (f.damped.overdamped.empty())
+      for (const auto& mode : f.damped.modes) f.lambda.push_back(mode.lambda);
   }
   return f;
 }
@@ -264,41 +266,6 @@ std::string json(const Found found[2], double unit) {
   return fmt::format("{{\n  \"modes\": [{}\n  ],\n  \"complete\": {}\n}}\n", rows, found[0].set.complete() && found[1].set.complete());
 }
 
-// The model as text for a study file: [modal_model] of any kind that integrates or balances.
-std::string modal_model_text(const models::ModalModel& m, const ReducedModel& r) {
-  std::string text = fmt::format("[modal_model]                       # {} modes out of plane, then {} in plane; largest displacements [m]\n",
-                                 r.out_of_plane, r.in_plane);
-  text += fmt::format("frequency = [{:.12g}]\ndamping = [{:.6g}]\nterm = [\n", fmt::join(m.frequency, ", "), fmt::join(m.damping, ", "));
-  for (const auto& t : m.terms)
-    text += fmt::format("  {{ equation = {}, coefficient = {:.10g}, powers = [{}] }},\n", t.equation + 1, t.coefficient, fmt::join(t.powers, ", "));
-  return text + "]\n";
-}
-
-void write_reduced(ResultFile& file, const HangingCable& cable, const ReducedOptions& o, RunContext& context) {
-  if (o.out_of_plane + o.in_plane == 0) return;
-  CoreCable core = core_of(cable);
-  core.kappa = std::max(core.kappa, 1e-7);  // stands for an inextensible cable
-  const ReducedModel r = reduced_model(core, o);
-  const models::ModalModel m = in_si_units(r, cable);
-  std::vector<Column> t{{"equation", "-", "number of the coordinate, from 1", {}}, {"coefficient", "1/s^2/m^k", "on the left-hand side", {}}};
-  for (int i = 0; i < m.size(); ++i) t.push_back({fmt::format("power{}", i + 1), "-", fmt::format("of q{}", i + 1), {}});
-  for (const auto& term : m.terms) {
-    t[0].values.push_back(term.equation + 1.0);
-    t[1].values.push_back(term.coefficient);
-    for (std::size_t i = 0; i < term.powers.size(); ++i) t[i + 2].values.push_back(term.powers[i]);
-  }
-  file.table("/reduced", t);
-  file.text("/reduced", "modal_model", modal_model_text(m, r));
-  file.attribute("/reduced", "first_left_out", r.first_left_out * frequency_unit(cable));
-  if (!context.quiet) {
-    fmt::print(stderr,
-               "nonlinear model of {} modes: {} terms; lowest frequency in plane without inertia {:.6g} rad/s; relative change of frequency per m^2:",
-               m.size(), m.terms.size(), r.first_left_out * frequency_unit(cable));
-    for (int i = 0; i < m.size(); ++i) fmt::print(stderr, " {:.4g}", backbone_curvature(r, i) / (cable.shape.a * cable.shape.a));
-    fmt::print(stderr, "\n");
-  }
-}
-
 ExitStatus run(const Configuration& c, RunContext& context) {
   const HangingCable cable = setup(c);
   for (const auto& w : hanging_cable_warnings(cable)) context.warn(w);
@@ -327,9 +294,11 @@ ExitStatus run(const Configuration& c, RunContext& context) {
     file.attribute(group, "counted_below", f.set.counted_below * unit);
     file.attribute(group, "functions", double(f.set.functions));
     if (points > 1) write_shapes(file, cable, f, lateral, points);
+    if (!lateral && !f.damped.modes.empty()) write_damped(file, cable, f.damped, points);
     if (!f.set.complete())
       failures.push_back(fmt::format("modes {} are not proved complete: {} listed, {} counted", plane_name(lateral), f.set.expected, f.set.counted));
     if (!context.quiet) fmt::print(stderr, "{}", text(f, unit, lateral));
+    if (!context.quiet && !lateral) fmt::print(stderr, "{}", damped_text(f.damped, unit));
     if (c.flag("series.compare")) write_series(file, cable, count, lateral, context, failures);
   }
   write_reduced(file, cable, reduced_options(c), context);

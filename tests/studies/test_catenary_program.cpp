@@ -69,6 +69,12 @@ TEST_CASE("catenary-modes: frequencies in SI and as ratios, shapes, sweep, serie
   CHECK(t.columns[1].values[0] == Approx(numbers(r.out, "omega_ratio")[0] * unit).epsilon(1e-12));
   CHECK(t.columns[2].values[0] == Approx(t.columns[1].values[0] / (2.0 * 3.14159265358979324)).epsilon(1e-12));
   CHECK(file.column("/modes/in_plane", "decay").values[0] == Approx(0.025).epsilon(0.2));  // drag 0.5 over twice 10 kg/m, less its tangential share
+  CHECK(file.column("/modes/damped", "decay").values[7] == Approx(0.025).epsilon(0.2));
+  CHECK(file.column("/modes/damped", "damping_ratio").values[0] ==
+        Approx(0.025 / file.column("/modes/damped", "damped_omega").values[0]).epsilon(0.2));
+  const auto amplitude = file.column("/shapes/damped/mode3", "V").values, phase = file.column("/shapes/damped/mode3", "V_phase").values;
+  CHECK(*std::max_element(amplitude.begin(), amplitude.end()) == Approx(0.99).margin(0.02));
+  CHECK(*std::max_element(phase.begin(), phase.end()) != *std::min_element(phase.begin(), phase.end()));  // unequal drag: not in step
   CHECK(file.column("/shapes/in_plane/mode3", "V").values.front() == Approx(0.0).epsilon(0).margin(1e-9));
   CHECK(file.column("/sweep/out_of_plane/h0.5", "w1").values.size() == 3);
 
@@ -145,6 +151,19 @@ TEST_CASE("catenary-modes: a nonlinear model that other kinds take; the asymptot
   for (const double edge : {0.94171764894, 0.97871996656})
     CHECK(std::any_of(at.begin(), at.end(), [&](double w) { return std::abs(w - edge) < 1e-7; }));
   CHECK(program(f, "run " + study("catenary-modes") + "--set reduced.out_of_plane=7 --set reduced.in_plane=6 -o x.h5").status == 2);
+}
+
+TEST_CASE("catenary-modes: modes that drag keeps from oscillating are told") {
+  const Folder f;
+  const Ran r =
+      program(f, "run " + study("catenary-modes") + "--set drag.normal=30 --set drag.tangential=30 --set sweep.height_over_span=[] -o m.h5");
+  INFO(r.err);
+  REQUIRE(r.status == 0);
+  CHECK(r.err.find("2 roots do not oscillate") != std::string::npos);  // drag over mass 3 > 2 x 1.24 rad/s
+  ResultReader file(f.path / "m.h5");
+  CHECK(file.numbers_attribute("/modes/damped", "overdamped_decay").size() == 2);
+  const double omega = file.column("/modes/in_plane", "omega").values[1];  // equal drag: w^2 - 1.5^2
+  CHECK(file.column("/modes/damped", "damped_omega").values[0] == Approx(std::sqrt(omega * omega - 2.25)).epsilon(1e-9));
 }
 
 TEST_CASE("hanging cables: bad input gives one clear line and nothing else") {
