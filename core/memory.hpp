@@ -1,7 +1,7 @@
 #pragma once
-/// Memory that is freed stays with the process. Dense problems of a hundred unknowns allocate and free about a megabyte each; the C library hands that
-/// back to the system every time, and fetching it again costs a quarter of a sweep. Programs that solve many call this once; results do not depend
-/// on it.
+/// Memory that is freed stays with the process. Dense problems of a hundred unknowns allocate and free about a megabyte each; the C library hands
+/// that back to the system every time, and fetching it again costs a quarter of a sweep. Programs that solve many call this once; results do not
+/// depend on it.
 ///
 ///     int main() { whirl::keep_freed_memory(); ... }
 

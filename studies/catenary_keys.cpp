@@ -104,9 +104,15 @@ HangingCable hanging_cable_of(const Configuration& c) {
 }
 
 std::vector<std::string> hanging_cable_warnings(const HangingCable& cable) {
-  const double strain = core_of(cable).kappa * std::cosh(std::max(std::abs(cable.shape.x1), cable.shape.x2));
-  if (strain < 1e-3) return {};
-  return {fmt::format("the static stretch, up to {:.2g} of the length, is left out of the shape: give the stretched length, or the sag", strain)};
+  const double steepest = std::max(std::abs(cable.shape.x1), cable.shape.x2), strain = core_of(cable).kappa * std::cosh(steepest);
+  std::vector<std::string> warnings;
+  if (strain >= 1e-3)
+    warnings.push_back(
+        fmt::format("the static stretch, up to {:.2g} of the length, is left out of the shape: give the stretched length, or the sag", strain));
+  if (steepest > 9.0)  // seen: 1e-17 times the square of the slope, and a hundredfold where the cable stretches
+    warnings.push_back(fmt::format("an end stands at a slope of {:.2g}: frequencies in plane keep about {:.0f} digits", std::sinh(steepest),
+                                   std::max(0.0, (core_of(cable).kappa > 0.0 ? 15.0 : 17.0) - 2.0 * std::log10(std::sinh(steepest)))));
+  return warnings;
 }
 
 void write_hanging_cable(ResultFile& file, const HangingCable& cable) {
