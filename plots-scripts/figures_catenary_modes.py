@@ -6,7 +6,7 @@ from figures_common import BLUE, CYCLE, DASHES, GREY, INK, VERMILLION, Page, let
 
 
 def figures(result):
-    found = [("modes", modes(result)), ("tension", tension(result)), ("sag", sag(result))]
+    found = [("modes", modes(result)), ("tension", tension(result)), ("sag", sag(result)), ("short-waves", short_waves(result))]
     return [(name, figure) for name, figure in found if figure is not None]
 
 
@@ -124,3 +124,33 @@ def draw_sag(axes, table):
     axes.set_ylim(0, 26)
     axes.set_xlim(x[0], x[-1])
     axes.grid(True, color="#ececec", linewidth=0.6)
+
+
+def short_waves(result):
+    """Level cable, in plane: frequencies and the asymptotic formula for short waves, and how far it is off."""
+    if "h0" not in result.group("sweep/in_plane").groups:
+        return None
+    table = result.group("sweep/in_plane/h0")
+    count = min(6, sum(name.startswith("asymptotic") for name in table.columns))
+    if count == 0:
+        return None
+    keys = [line_key(f"mode {k + 1}", color=CYCLE[k], linewidth=1.4) for k in range(count)]
+    keys.append(line_key("asymptotic", color=INK, linewidth=1.0, linestyle=DASHES))
+    page = Page(7.2, 3.0, "Level cable, in plane: the asymptotic formula for short waves",
+                [sentence(result, "Inextensible. The formula has no root for low modes of deep cables.")], keys)
+    left, right = page.subplots(1, 2)[0]
+    x = table.column("sag_parameter")
+    for k in range(count):
+        exact, formula = table.column(f"w{k + 1}"), table.column(f"asymptotic{k + 1}")
+        left.plot(x, exact, color=CYCLE[k], linewidth=1.4)
+        left.plot(x, formula, color=INK, linewidth=1.0, linestyle=DASHES)
+        right.semilogy(x, np.abs(formula / exact - 1), color=CYCLE[k], linewidth=1.4)
+    left.set_ylim(0, 26)
+    left.set_ylabel(r"$\omega\,\sqrt{a/g}$")
+    right.set_ylabel("relative error of the formula")
+    for letter_index, axes in enumerate((left, right)):
+        axes.set_xlim(x[0], x[-1])
+        axes.set_xlabel(r"$b/\sqrt{l^2-h^2}$")
+        axes.set_title(letter(letter_index), loc="left", fontsize=8.5)
+        axes.grid(True, color="#ececec", linewidth=0.6)
+    return page.finish()

@@ -25,7 +25,7 @@ const GeometryKey quantities[] = {
     {"cable.sag", "sag", "m", "f, vertical distance from the chord to the cable at half the span", &GeometryInput::sag, std::nullopt},
     {"cable.horizontal_tension", "horizontal tension", "N", "H, horizontal part of the static tension", &GeometryInput::horizontal_tension,
      std::nullopt},
-    {"cable.upper_tension", "tension at the upper end", "N", "static tension at the upper support, with span and height_difference",
+    {"cable.upper_tension", "tension at the upper end", "N", "static tension at the upper support; of two such cables the taut one",
      &GeometryInput::upper_tension, std::nullopt},
 };
 
@@ -106,9 +106,15 @@ HangingCable hanging_cable_of(const Configuration& c) {
 }
 
 std::vector<std::string> hanging_cable_warnings(const HangingCable& cable) {
-  const double strain = core_of(cable).kappa * std::cosh(std::max(std::abs(cable.shape.x1), cable.shape.x2));
-  if (strain < 1e-3) return {};
-  return {fmt::format("the static stretch, up to {:.2g} of the length, is left out of the shape: give the stretched length, or the sag", strain)};
+  const double steepest = std::max(std::abs(cable.shape.x1), cable.shape.x2), strain = core_of(cable).kappa * std::cosh(steepest);
+  std::vector<std::string> warnings;
+  if (strain >= 1e-3)
+    warnings.push_back(
+        fmt::format("the static stretch, up to {:.2g} of the length, is left out of the shape: give the stretched length, or the sag", strain));
+  if (steepest > 9.0)  // seen: 1e-17 times the square of the slope, and a hundredfold where the cable stretches
+    warnings.push_back(fmt::format("an end stands at a slope of {:.2g}: frequencies in plane keep about {:.0f} digits", std::sinh(steepest),
+                                   std::max(0.0, (core_of(cable).kappa > 0.0 ? 15.0 : 17.0) - 2.0 * std::log10(std::sinh(steepest)))));
+  return warnings;
 }
 
 void write_hanging_cable(ResultFile& file, const HangingCable& cable) {

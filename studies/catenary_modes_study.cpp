@@ -1,15 +1,18 @@
 #include "studies/catenary_modes_study.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
 #include "core/parallel.hpp"
+#include "models/catenary/asymptotic.hpp"
 #include "models/catenary/backbone.hpp"
 #include "models/catenary/gale_series.hpp"
 #include "studies/catenary_keys.hpp"
+#include "studies/catenary_modes_output.hpp"
 #include "studies/common_keys.hpp"
 
 namespace whirl::studies {
@@ -29,6 +32,17 @@ Schema schema() {
   s.add({.name = "series.compare",
          .description = "solve again by the source's series, inextensible cable with |xi| < 4 at both ends, and compare",
          .default_value = false});
+  const auto reduced = [&](const char* name, const char* description) {
+    s.add({.name = name,
+           .description = description,
+           .default_value = std::int64_t{0},
+           .lower = 0,
+           .upper = 12,
+           .closed_lower = true,
+           .closed_upper = true});
+  };
+  reduced("reduced.out_of_plane", "lowest modes out of plane of a nonlinear model on catenary modes, written as [modal_model]");
+  reduced("reduced.in_plane", "its lowest modes in plane, after those out of plane; both 0: no such model");
   s.add({.name = "sweep.sag_parameter",
          .description = "range of b/sqrt(l^2 - h^2), 1 taut, over which frequencies in sqrt(g/a) are tabulated",
          .default_value = std::vector<double>{0.5, 0.98},
@@ -65,23 +79,34 @@ HangingCable setup(const Configuration& c) {
   return cable;
 }
 
-std::vector<std::string> check(const Configuration& c) { return hanging_cable_warnings(setup(c)); }
+ReducedOptions reduced_options(const Configuration& c) {
+  const ReducedOptions o{int(c.integer("reduced.out_of_plane")), int(c.integer("reduced.in_plane"))};
+  if (o.out_of_plane + o.in_plane > 12) throw c.error("reduced.in_plane", "with reduced.out_of_plane at most 12 modes");
+  return o;
+}
+
+std::vector<std::string> check(const Configuration& c) {
+  (void)reduced_options(c);
+  return hanging_cable_warnings(setup(c));
+}
 
 const char* plane_name(bool lateral) { return lateral ? "out_of_plane" : "in_plane"; }
 
 struct Found {
   ModeSet set;
-  std::vector<std::complex<double>> lambda;  // with drag, in sqrt(g/a)
+  std::vector<std::complex<double>> lambda;  // with drag, in sqrt(g/a), one a mode; empty if some modes in plane do not oscillate
+  DampedSet damped;                          // in plane
 };
 
 Found find(const CoreCable& core, int count, bool lateral) {
   const ModeOptions options{.count = count};
-  Found f{lateral ? out_of_plane_modes(core, options) : in_plane_modes(core, options), {}};
+  Found f{lateral ? out_of_plane_modes(core, options) : in_plane_modes(core, options), {}, {}};
   if (lateral && core.eta3 > 0.0)
     for (const auto& mode : f.set.modes) f.lambda.push_back(damped_root(mode.omega, core.eta3));
   if (!lateral && (core.eta1 > 0.0 || core.eta2 > 0.0)) {
-    const DampedSet damped = damped_modes(core, {.count = count, .functions = f.set.functions, .shapes = false});
-    for (const auto& mode : damped.modes) f.lambda.push_back(mode.lambda);
+    f.damped = damped_modes(core, {.count = count, .functions = f.set.functions});
+    if (f.damped.overdamped.empty())
+      for (const auto& mode : f.damped.modes) f.lambda.push_back(mode.lambda);
   }
   return f;
 }
@@ -157,6 +182,10 @@ void write_sweep(ResultFile& file, const Configuration& c, double h, bool latera
   for (int k = 1; k <= count; ++k) t.push_back({fmt::format("w{}", k), "-", "omega / sqrt(g/a)", std::vector<double>(std::size_t(points))});
   if (lateral)
     t.push_back({"pendulum", "-", "the rigid cable swinging about its chord, Rayleigh's estimate of w1", std::vector<double>(std::size_t(points))});
+  const bool asymptotic = !lateral && h == 0.0;
+  for (int k = 1; asymptotic && k <= count; ++k)
+    t.push_back({fmt::format("asymptotic{}", k), "-", "short-wave formula for omega / sqrt(g/a); nan where it has no root",
+                 std::vector<double>(std::size_t(points))});
   std::atomic<int> unresolved{0};
   parallel_for(std::size_t(points), [&](std::size_t i) {
     const double sag = range[0] + (range[1] - range[0]) * double(i) / (points - 1);
@@ -167,7 +196,10 @@ void write_sweep(ResultFile& file, const Configuration& c, double h, bool latera
     if (!set.complete()) ++unresolved;
     t[0].values[i] = sag;
     if (lateral) t.back().values[i] = pendulum_estimate(g);
-    for (std::size_t k = 0; k < std::size_t(count); ++k) t[k + 1].values[i] = k < set.modes.size() ? set.modes[k].omega : std::nan("");
+    for (std::size_t k = 0; k < std::size_t(count); ++k) {
+      t[k + 1].values[i] = k < set.modes.size() ? set.modes[k].omega : std::nan("");
+      if (asymptotic) t[std::size_t(count) + k + 1].values[i] = asymptotic_frequency(g.m, int(k) + 1).value_or(std::nan(""));
+    }
   });
   const std::string group = fmt::format("/sweep/{}/h{:g}", plane_name(lateral), h);
   file.table(group, t);
@@ -250,11 +282,14 @@ ExitStatus run(const Configuration& c, RunContext& context) {
     file.attribute(group, "counted_below", f.set.counted_below * unit);
     file.attribute(group, "functions", double(f.set.functions));
     if (points > 1) write_shapes(file, cable, f, lateral, points);
+    if (!lateral && !f.damped.modes.empty()) write_damped(file, cable, f.damped, points);
     if (!f.set.complete())
       failures.push_back(fmt::format("modes {} are not proved complete: {} listed, {} counted", plane_name(lateral), f.set.expected, f.set.counted));
     if (!context.quiet) fmt::print(stderr, "{}", text(f, unit, lateral));
+    if (!context.quiet && !lateral) fmt::print(stderr, "{}", damped_text(f.damped, unit));
     if (c.flag("series.compare")) write_series(file, cable, count, lateral, context, failures);
   }
+  write_reduced(file, cable, reduced_options(c), context);
   file.flush();
   for (const double h : c.numbers("sweep.height_over_span"))
     for (const bool lateral : {false, true})

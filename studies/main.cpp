@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <filesystem>
 
+#include "core/memory.hpp"
 #include "studies/export.hpp"
 #include "studies/modes_study.hpp"
 #include "studies/registry.hpp"
@@ -47,6 +48,7 @@ ExitStatus check(const std::string& file, const std::vector<std::string>& overri
 }  // namespace
 
 int main(int argc, char** argv) {
+  whirl::keep_freed_memory();
   CLI::App app{"Whirl: nonlinear response of cables by continuation, averaging and time integration"};
   app.set_version_flag("--version", version_text());
   app.require_subcommand(1);

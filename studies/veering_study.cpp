@@ -123,7 +123,7 @@ void write_approaches(ResultFile& file, const Setup& s, const std::vector<Found>
 // Level cable: each symmetric mode followed by the walker; where it crosses an antisymmetric one is a branch point.
 void write_crossings(ResultFile& file, const Setup& s, const Geometry& g, std::vector<std::string>& failures) {
   const ModeSet first = in_plane_modes({.x1 = g.x1, .x2 = g.x2, .kappa = s.lower}, {.count = s.modes, .shapes = false, .verify = false});
-  const FrequencyCurve curve(g.x1, g.x2, functions_for(g.m, s.modes), first.modes[0].omega);
+  const FrequencyCurve curve(g.x1, g.x2, functions_for_range(g.x1, g.x2, s.lower, s.upper, s.modes), first.modes[0].omega);
   continuation::WalkOptions walk;
   walk.lower = std::sqrt(s.lower);
   walk.upper = std::sqrt(s.upper);

@@ -12,9 +12,9 @@ namespace {
 
 Field<double> displacements(const InPlaneGalerkin& g, double kappa, const Vector& q) {
   const auto at = g.nodal<double>(kappa, q, Eigen::Vector4d::Zero());
-  Field<double> f{g.mesh().x1, g.mesh().x2, Matrix(at.U.size(), 2)};
-  f.coefficients.col(0) = g.mesh().project<double>(at.U);
-  f.coefficients.col(1) = g.mesh().project<double>(at.V);
+  Field<double> f{g.mesh().coordinate, Matrix(at.U.size(), 2)};
+  f.coefficients.col(0) = g.mesh().project(at.U);
+  f.coefficients.col(1) = g.mesh().project(at.V);
   return f;
 }
 
@@ -25,7 +25,7 @@ Backbone lateral_backbone(const CoreCable& c, int mode) {
   if (mode < 1) throw std::invalid_argument(fmt::format("modes are numbered from 1, got {}", mode));
   const Mode swing = out_of_plane_modes(c, {.count = mode, .verify = false}).modes[static_cast<std::size_t>(mode) - 1];
   // G has twice the waves of the mode, and so has what it drives.
-  const InPlaneGalerkin g(c.x1, c.x2, functions_for(0.5 * (c.x2 - c.x1), 2 * mode + 8) + 8);
+  const InPlaneGalerkin g(c.x1, c.x2, functions_for(c, 2 * mode + 8) + 8);
   const Mesh& mesh = g.mesh();
   const Vector slope = swing.field.at(mesh.x, Quantity::W_slope), G = 0.5 * slope.cwiseAbs2().cwiseQuotient(mesh.c);
   const Vector stiff = (mesh.c.cwiseInverse() / c.kappa).array() - 1.0;  // (EA - T0)/H per dx

@@ -10,6 +10,7 @@
 #include <Eigen/LU>
 #include <algorithm>
 
+#include "models/catenary/largest.hpp"
 #include "models/catenary/modes.hpp"
 
 namespace whirl::models::catenary {
@@ -69,14 +70,13 @@ struct QuadraticProblem {
 };
 
 DampedMode mode_of(const InPlaneGalerkin& g, const Mirror& mirror, const CoreCable& c, Complex lambda, const ComplexVector& q) {
-  auto at = g.nodal<Complex>(c.kappa, q, Eigen::Vector4cd::Zero());
-  const Eigen::VectorXd size = at.U.cwiseAbs2() + at.V.cwiseAbs2();
+  const auto at = g.nodal<Complex>(c.kappa, q, Eigen::Vector4cd::Zero());
+  const Complex L1 = lambda * lambda + c.eta1 * lambda, L2 = lambda * lambda + c.eta2 * lambda;
+  DampedMode mode{lambda, 0.0, field_of<Complex>(g.mesh(), at, L1, L2)};
   Eigen::Index i;
-  size.maxCoeff(&i);
-  const Complex lead = std::abs(at.V[i]) > std::abs(at.U[i]) ? at.V[i] : at.U[i];
-  const Complex scale = std::conj(lead) / std::abs(lead) / std::sqrt(size[i]);
-  for (ComplexVector* v : {&at.U, &at.V, &at.N}) *v *= scale;
-  DampedMode mode{lambda, 0.0, field_of<Complex>(g.mesh(), at, lambda * lambda + c.eta1 * lambda, lambda * lambda + c.eta2 * lambda)};
+  (at.U.cwiseAbs2() + at.V.cwiseAbs2()).maxCoeff(&i);
+  const Complex lead = std::abs(at.V[i]) > std::abs(at.U[i]) ? at.V[i] : at.U[i];  // real and positive there
+  mode.field.coefficients *= std::conj(lead) / (std::abs(lead) * largest_displacement<Complex>(g.mesh(), mode.field, at, c.kappa, L1, L2));
   mode.odd_share = mirror.odd_share(mode.field, Quantity::V);
   return mode;
 }

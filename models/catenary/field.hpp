@@ -1,11 +1,14 @@
 #pragma once
-/// Displacements and forces along the cable as Legendre series in x: known at any point, not only where they were computed.
+/// Displacements and forces along the cable as Legendre series in the graded coordinate of mesh.hpp: known at any point, not only where they were
+/// computed.
 ///
 /// In plane the columns are U, V, N, T; N/c is the change of slope. Out of plane they are W, W_x. Real for modes, complex for damped modes and
 /// forced motion. Units as in galerkin.hpp: displacements in a, forces in H.
 ///
 ///     Field<double> f = ...;
-///     auto v = f.at(x, Quantity::V);                 // x between f.x1 and f.x2
+///     auto v = f.at(x, Quantity::V);                 // x between the ends
+
+#include <array>
 
 #include "models/catenary/galerkin.hpp"
 
@@ -18,7 +21,7 @@ using ColumnVector = Eigen::Matrix<S, Eigen::Dynamic, 1>;
 
 template <class S>
 struct Field {
-  double x1 = 0.0, x2 = 0.0;
+  Coordinate coordinate;
   Eigen::Matrix<S, Eigen::Dynamic, Eigen::Dynamic> coefficients;  ///< Legendre coefficients, one column a quantity
 
   ColumnVector<S> at(In x, Quantity quantity) const { return table(x).template cast<S>() * coefficients.col(static_cast<int>(quantity)); }
@@ -26,20 +29,36 @@ struct Field {
   Eigen::Matrix<S, Eigen::Dynamic, Eigen::Dynamic> at(In x) const { return table(x).template cast<S>() * coefficients; }
   /// One point, by Clenshaw's recurrence: nothing is allocated.
   S at(double x, Quantity quantity) const {
-    const double t = (2.0 * x - x1 - x2) / (x2 - x1);
-    const auto a = coefficients.col(static_cast<int>(quantity));
-    S b1(0.0), b2(0.0);
-    for (Eigen::Index k = a.size() - 1; k > 0; --k) {
-      const double n = static_cast<double>(k);
-      const S b = a[k] + ((2.0 * n + 1.0) / (n + 1.0) * t) * b1 - ((n + 1.0) / (n + 2.0)) * b2;
-      b2 = b1;
-      b1 = b;
-    }
-    return a[0] + t * b1 - 0.5 * b2;
+    std::array<S, 1> value;
+    clenshaw(coordinate.t(x), coefficients.data() + static_cast<int>(quantity) * coefficients.rows(), value);
+    return value[0];
+  }
+  /// The first `columns` quantities at one point.
+  template <std::size_t columns>
+  std::array<S, columns> first_at(double x) const {
+    std::array<S, columns> values;
+    clenshaw(coordinate.t(x), coefficients.data(), values);
+    return values;
   }
 
  private:
-  Matrix table(In x) const { return legendre_values(((2.0 * x.array() - x1 - x2) / (x2 - x1)).matrix(), static_cast<int>(coefficients.rows())); }
+  template <std::size_t columns>
+  void clenshaw(double t, const S* a, std::array<S, columns>& values) const {
+    const auto rows = coefficients.rows();
+    std::array<S, columns> b1{}, b2{};
+    for (Eigen::Index k = rows - 1; k > 0; --k) {
+      const double n = static_cast<double>(k), first = (2.0 * n + 1.0) / (n + 1.0) * t, second = (n + 1.0) / (n + 2.0);
+      for (std::size_t j = 0; j < columns; ++j) {
+        const S b = a[k + Eigen::Index(j) * rows] + first * b1[j] - second * b2[j];
+        b2[j] = b1[j];
+        b1[j] = b;
+      }
+    }
+    for (std::size_t j = 0; j < columns; ++j) values[j] = a[Eigen::Index(j) * rows] + t * b1[j] - 0.5 * b2[j];
+  }
+  Matrix table(In x) const {
+    return legendre_values(x.unaryExpr([this](double s) { return coordinate.t(s); }), static_cast<int>(coefficients.rows()));
+  }
 };
 
 /// The field behind U, V, N at the mesh points. The tension follows from the balance along the cable, its constant from the balance across:
@@ -50,25 +69,25 @@ struct Field {
 template <class S>
 Field<S> field_of(const Mesh& mesh, const InPlaneGalerkin::Nodal<S>& at, S L1, S L2) {
   const auto n = mesh.t.size();
-  Field<S> f{mesh.x1, mesh.x2, {}};
-  f.coefficients.setZero(n, 4);
-  f.coefficients.col(0) = mesh.template project<S>(at.U);
-  f.coefficients.col(1) = mesh.template project<S>(at.V);
-  f.coefficients.col(2) = mesh.template project<S>(at.N);
-  const ColumnVector<S> slope = L1 * mesh.c.cwiseProduct(at.U) + at.N.cwiseQuotient(mesh.c.template cast<S>());
-  const ColumnVector<S> a = mesh.template project<S>(slope);
+  Field<S> f{mesh.coordinate, {}};
+  f.coefficients.resize(n, 4);
+  f.coefficients.col(0) = at.U;
+  f.coefficients.col(1) = at.V;
+  f.coefficients.col(2) = at.N;
+  const Vector cJ = mesh.c.cwiseProduct(mesh.J), Jc = mesh.J.cwiseQuotient(mesh.c);
+  f.coefficients.col(3) = L1 * cJ.template cast<S>().cwiseProduct(at.U) + Jc.template cast<S>().cwiseProduct(at.N);  // T_t
+  f.coefficients = mesh.project(f.coefficients);
   ColumnVector<S> T = ColumnVector<S>::Zero(n);
-  for (Eigen::Index k = 0; k + 1 < n; ++k) {  // m int P_k = m (P_{k+1} - P_{k-1}) / (2 k + 1)
-    const S part = mesh.m * a[k] / (2.0 * static_cast<double>(k) + 1.0);
+  for (Eigen::Index k = 0; k + 1 < n; ++k) {  // int P_k = (P_{k+1} - P_{k-1}) / (2 k + 1)
+    const S part = f.coefficients(k, 3) / (2.0 * static_cast<double>(k) + 1.0);
     T[k + 1] += part;
     T[k == 0 ? 0 : k - 1] += k == 0 ? part : -part;
   }
-  const Vector p = 1.0 - mesh.t.array().square(), px = -2.0 / mesh.m * mesh.t;
-  const ColumnVector<S> T_at = mesh.legendre.leftCols(n).template cast<S>() * T;
-  const Vector p_over_c = mesh.weight.cwiseProduct(p).cwiseQuotient(mesh.c);
-  const Vector pc = mesh.weight.cwiseProduct(p).cwiseProduct(mesh.c), wpx = mesh.weight.cwiseProduct(px);
-  const S across = L2 * (pc.template cast<S>().transpose() * at.V)(0) + (wpx.template cast<S>().transpose() * at.N)(0);
-  T[0] += (across - (p_over_c.template cast<S>().transpose() * T_at)(0)) / p_over_c.sum();
+  const Vector p = mesh.weight.array() * (1.0 - mesh.t.array().square());
+  const Vector p_over_c = p.cwiseQuotient(mesh.c), pc = p.cwiseProduct(mesh.c), px = -2.0 * mesh.gauss.cwiseProduct(mesh.t);
+  const Vector T_weight = mesh.legendre.transpose() * p_over_c;
+  const S across = L2 * (pc.template cast<S>().transpose() * at.V)(0) + (px.template cast<S>().transpose() * at.N)(0);
+  T[0] += (across - (T_weight.template cast<S>().transpose() * T)(0)) / p_over_c.sum();
   f.coefficients.col(3) = T;
   return f;
 }

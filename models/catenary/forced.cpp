@@ -12,21 +12,6 @@ namespace {
 
 using Complex = std::complex<double>;
 
-// Half waves below a frequency: w int sqrt(cosh x) dx / pi transversally, w sqrt(kappa) int cosh x dx / pi along the cable.
-int half_waves(const CoreCable& c, double omega) {
-  const Mesh mesh(c.x1, c.x2, 8);
-  const double across = mesh.weight.dot(mesh.c.cwiseSqrt()), along = std::sqrt(c.kappa) * (std::sinh(c.x2) - std::sinh(c.x1));
-  return 2 + static_cast<int>(omega * (across + along) / std::numbers::pi);
-}
-
-int functions_up_to(const CoreCable& c, double omega) {
-  if (!(omega >= 0.0 && std::isfinite(omega))) throw std::invalid_argument(fmt::format("a frequency must be >= 0, got {:g}", omega));
-  if (!(c.x1 < c.x2)) throw std::invalid_argument("the ends of a cable must satisfy x1 < x2");
-  const int n = functions_for(0.5 * (c.x2 - c.x1), half_waves(c, omega)) + 8;
-  if (n > 1000) throw std::invalid_argument(fmt::format("the frequency {:g} sqrt(g/a) has too many waves along the cable", omega));
-  return n;
-}
-
 Eigen::VectorXcd reduced_solve(const Matrix& re, const Matrix& im, const Eigen::VectorXcd& right) {
   Eigen::MatrixXcd A(re.rows(), re.cols());
   A.real() = re;
@@ -44,7 +29,7 @@ TangentNormal turned(double x, Complex horizontal, Complex vertical) {
 ForcedSolver::ForcedSolver(const CoreCable& c, double largest_omega)
     : cable_(c),
       largest_omega_(largest_omega),
-      g_(c.x1, c.x2, functions_up_to(c, largest_omega)),
+      g_(c.x1, c.x2, functions_up_to(c, largest_omega) + 8),
       lateral_(c.x1, c.x2, g_.functions()),
       K_(g_.stiffness(c.kappa)),
       MU_(g_.mass(c.kappa, 1.0, 0.0)),
@@ -64,22 +49,22 @@ ForcedMotion ForcedSolver::at(double omega, const EndMotion& ends) const {
   const Eigen::VectorXcd q = reduced_solve(K_ + L1.real() * MU_ + L2.real() * MV_, L1.imag() * MU_ + L2.imag() * MV_, load);
   motion.in_plane = field_of<Complex>(g_.mesh(), g_.nodal<Complex>(cable_.kappa, q, e), L1, L2);
   const Eigen::Vector2cd w(ends.W1, ends.W2);
-  motion.lateral = {cable_.x1, cable_.x2, Eigen::MatrixXcd::Zero(lateral_.mesh().t.size(), 2)};
+  motion.lateral = {lateral_.mesh().coordinate, Eigen::MatrixXcd::Zero(lateral_.mesh().t.size(), 2)};
   if (w.isZero(0.0)) return motion;
   const int n = lateral_.size();
   Eigen::VectorXcd all(n + 2);
   all.tail(2) = w;
   all.head(n) = reduced_solve(lateral_.stiffness() + L3.real() * lateral_.mass(), L3.imag() * lateral_.mass(),
                               -(lateral_.lift_stiffness() * w + L3 * (lateral_.lift_mass() * w)));
-  motion.lateral.coefficients.col(0) = lateral_.mesh().project<Complex>(lateral_.W() * all);
-  motion.lateral.coefficients.col(1) = lateral_.mesh().project<Complex>(lateral_.W_slope() * all);
+  motion.lateral.coefficients.col(0) = lateral_.mesh().project((lateral_.W() * all).eval());
+  motion.lateral.coefficients.col(1) = lateral_.mesh().project((lateral_.W_slope() * all).eval());
   return motion;
 }
 
 PeakFinder::PeakFinder(const Mesh& mesh) {
   const auto n = mesh.t.size();
   const Vector t = Vector::LinSpaced(std::max<Eigen::Index>(200, 4 * n), -1.0, 1.0);
-  x_ = (mesh.x_m + mesh.m * t.array()).cwiseMax(mesh.x1).cwiseMin(mesh.x2);
+  x_ = t.unaryExpr([&](double s) { return mesh.coordinate.x(s); });
   c_ = x_.array().cosh();
   legendre_ = legendre_values(t, static_cast<int>(n));
 }

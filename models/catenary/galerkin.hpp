@@ -7,11 +7,11 @@
 ///     U_x = V/c + kappa c T      V_x = N - U/c       N_x = L2 c V - T/c      T_x = L1 c U + N/c      L_i = lambda^2 + eta_i lambda
 ///     W_xx = L3 c W              PE = 1/2 int [(V_x + U/c)^2 + (U_x - V/c)^2 / (kappa c)] dx         KE = lambda^2/2 int (U^2 + V^2) c dx
 ///
-/// Unknowns are the turning Q and the stretch R, polynomials in t (x = x_m + m t), of which U is an exact integral:
+/// Unknowns are the turning Q and the stretch R, polynomials in the graded coordinate t of mesh.hpp (J = dx/dt), of which U is an exact integral:
 ///
-///     V = c Q,   U_x = Q + s R,   s = sqrt(kappa),   T = R/(s c)          PE = 1/2 int [(V_x + U/c)^2 + R^2/c] dx
+///     V = c Q/J,   U_t = Q + s R,   s = sqrt(kappa),   T = R/(s c J)        PE = 1/2 int [(V_x + U/c)^2 + (R/J)^2/c] dx
 ///
-///     A: Q = phi_k, k >= 1       B: R = P_k, k >= 1       C: Q = s phi_0, R = -1/sqrt 6, so that int (Q + s R) dx = 0
+///     A: Q = phi_k, k >= 1       B: R = P_k, k >= 1       C: Q = s phi_0, R = -1/sqrt 6, so that int (Q + s R) dt = 0
 ///
 /// (phi_k, P_k as in core/legendre.hpp.) A alone is the inextensible cable. Nothing is divided by kappa: no digit is lost as kappa -> 0, and
 ///
@@ -25,34 +25,19 @@
 ///
 /// Throws std::invalid_argument for fewer than 2 functions, x1 >= x2 or kappa < 0.
 
-#include "core/legendre.hpp"
+#include "models/catenary/mesh.hpp"
 
 namespace whirl::models::catenary {
 
 /// Of V about the middle. Symmetric and antisymmetric motion separate at h = 0 only.
 enum class Parity { both, symmetric, antisymmetric };
 
-/// Quadrature on [x1, x2] that integrates products of two functions of the discretisation to rounding, and Legendre projection on it.
-struct Mesh {
-  Mesh(double x1, double x2, int n);
-  double x1, x2, m, x_m;
-  Vector t, x, weight, c;  ///< points in [-1, 1] and [x1, x2], weights of dx, cosh x
-  Matrix legendre;         ///< P_0 ... at the points, one column each
-  /// Legendre coefficients of a function known at the points.
-  template <class S>
-  Eigen::Matrix<S, Eigen::Dynamic, 1> project(const Eigen::Matrix<S, Eigen::Dynamic, 1>& values) const {
-    const auto n = t.size();
-    Eigen::Matrix<S, Eigen::Dynamic, 1> a = legendre.leftCols(n).transpose() * (weight.cwiseProduct(values) / m);
-    for (Eigen::Index k = 0; k < n; ++k) a[k] *= 0.5 * (2.0 * static_cast<double>(k) + 1.0);
-    return a;
-  }
-};
-
 class InPlaneGalerkin {
  public:
   static constexpr int lifts = 4;  ///< unit U1, V1, U2, V2 in this order
 
-  InPlaneGalerkin(double x1, double x2, int n);
+  /// A discretisation that is not elastic has the functions A only, and takes kappa = 0 only.
+  InPlaneGalerkin(double x1, double x2, int n, bool elastic = true);
 
   int functions() const { return n_; }
   int size(double kappa) const { return kappa > 0.0 ? 2 * n_ + 1 : n_; }
@@ -68,14 +53,16 @@ class InPlaneGalerkin {
   Matrix lift_stiffness(double kappa) const;
   Matrix lift_mass(double kappa, double tangential, double normal) const;
 
-  /// Which functions have one parity at h = 0.
-  std::vector<int> indices(double kappa, Parity parity) const;
+  /// Which functions have one parity at h = 0, those with k <= largest_k.
+  std::vector<int> indices(double kappa, Parity parity, int largest_k = 1 << 30) const;
+  /// k of function i, 0 for C.
+  int order(int i) const { return i == 2 * n_ ? 0 : i % n_ + 1; }
 
   /// Functions A, B, C and lifts at the mesh points, one column each; F = V_x + U/c. B and C still lack their factor s.
   const Matrix& U() const { return U_; }
   const Matrix& V() const { return V_; }
   const Matrix& F() const { return F_; }
-  const Matrix& R() const { return R_; }  ///< stretch of A, B and C, no lifts
+  const Matrix& R() const { return R_; }  ///< stretch R/J = (U_x - V/c)/s of A, B and C, no lifts
 
   /// U, V, N at the mesh points for coefficients q of size(kappa) and end values.
   template <class S>
@@ -96,13 +83,18 @@ class InPlaneGalerkin {
   Vector scale(double kappa, int order = 0) const;  // D and its derivatives
   Matrix scaled(const Matrix& a, double kappa, int order) const;
 
+  void add_lifts(Matrix& Q, Matrix& Q_t, const Matrix& phi_integral, const Matrix& p_integral);
+  Matrix gram(const Matrix& a, const Vector& weight, const std::vector<int>& chosen) const;
+  Matrix lift_work(const Matrix& a, const Vector& weight, double kappa) const;
+
   int n_;
+  bool elastic_;
   Mesh mesh_;
   Matrix U_, V_, F_, R_;
-  Matrix KF_, KR_, MU_, MV_;  // with the lifts' rows and columns, KR_ without
+  Matrix KF_, MU_, MV_, KR_;  // KR_: B and C alone
 };
 
-/// Out of plane: K = int W_x^2 dx, M = int c W^2 dx in the functions phi_0 ... phi_{n-1}; the lifts are the straight lines of unit W1, W2.
+/// Out of plane: K = int W_x^2 dx, M = int c W^2 dx in the functions phi_0 ... phi_{n-1} of t; the lifts are the straight lines of unit W1, W2.
 class LateralGalerkin {
  public:
   LateralGalerkin(double x1, double x2, int n);
@@ -112,7 +104,7 @@ class LateralGalerkin {
   const Matrix& mass() const { return M_; }
   const Matrix& lift_stiffness() const { return K_lift_; }  ///< size x 2
   const Matrix& lift_mass() const { return M_lift_; }
-  std::vector<int> indices(Parity parity) const;
+  std::vector<int> indices(Parity parity, int largest_k = 1 << 30) const;
   const Matrix& W() const { return W_; }            ///< functions and the two lifts at the mesh points
   const Matrix& W_slope() const { return slope_; }  ///< their x-derivatives
 
@@ -121,7 +113,7 @@ class LateralGalerkin {
   Matrix W_, slope_, K_, M_, K_lift_, M_lift_;
 };
 
-/// Rows and columns of a matrix.
-Matrix pick(const Matrix& a, const std::vector<int>& rows, const std::vector<int>& columns);
+/// Rows and columns of a symmetric matrix.
+Matrix pick(const Matrix& a, const std::vector<int>& chosen);
 
 }  // namespace whirl::models::catenary

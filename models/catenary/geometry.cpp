@@ -75,7 +75,7 @@ void check_input(const GeometryInput& in) {
   if (given != 3) refuse("a catenary needs exactly three of span, height difference, length, sag and tension, got {}", given);
   if ((in.horizontal_tension || in.upper_tension) && !(in.weight_per_length > 0.0 && std::isfinite(in.weight_per_length)))
     refuse("a tension needs a weight per length > 0, got {:g}", in.weight_per_length);
-  if (in.upper_tension && !(in.span && in.height)) refuse("the tension at the upper end needs span and height difference beside it");
+  if (in.upper_tension && in.horizontal_tension) refuse("of the two tensions only one can be given");
   if (in.length && in.span && *in.span >= *in.length) refuse("the span {:g} m is not shorter than the cable, {:g} m", *in.span, *in.length);
   if (in.length && in.height && *in.height >= *in.length)
     refuse("the height difference {:g} m is beyond reach of the cable, {:g} m", *in.height, *in.length);
@@ -96,9 +96,51 @@ Geometry from_upper_tension(const GeometryInput& in) {
   return from_height(0.5 * b / m, m, h);
 }
 
+Geometry solve(const GeometryInput& in);
+
+// Any two of the others beside the tension at the upper end: the largest horizontal tension that gives it.
+Geometry from_upper_tension_and(const GeometryInput& in) {
+  const double wanted = *in.upper_tension / in.weight_per_length;
+  GeometryInput with = in;
+  with.upper_tension.reset();
+  const auto at = [&](double a) {
+    with.horizontal_tension = a * in.weight_per_length;
+    return solve(with);
+  };
+  const auto excess = [&](double a) {
+    try {
+      const Geometry g = at(a);
+      return g.a * std::cosh(g.x2) - wanted;
+    } catch (const std::invalid_argument&) {
+      return std::nan("");  // no such cable
+    }
+  };
+  // Where cables begin or cease to exist between two tensions, the last that does.
+  const auto edge = [&](double is, double is_not) {
+    for (int i = 0; i < 60; ++i) (std::isnan(excess(0.5 * (is + is_not))) ? is_not : is) = 0.5 * (is + is_not);
+    return is;
+  };
+  double above = wanted, f_above = excess(above);
+  for (double a = 0.98 * wanted; a > 1e-6 * wanted; a *= 0.98) {
+    const double f = excess(a);
+    double lower = a, f_lower = f;
+    if (std::isnan(f_above) && !std::isnan(f)) f_above = excess(above = edge(a, above));
+    else if (!std::isnan(f_above) && std::isnan(f)) f_lower = excess(lower = edge(above, a));
+    if (f_above == 0.0) return at(above);
+    if (f_lower * f_above < 0.0) {
+      std::uintmax_t steps = 200;
+      const auto r = boost::math::tools::toms748_solve(excess, lower, above, f_lower, f_above, boost::math::tools::eps_tolerance<double>(52), steps);
+      return at(0.5 * (r.first + r.second));
+    }
+    above = a;
+    f_above = f;
+  }
+  refuse("no cable with the other two has the tension {:g} N at its upper end", *in.upper_tension);
+}
+
 Geometry solve(const GeometryInput& in) {
   const double b = in.span.value_or(0.0), h = in.height.value_or(0.0), l = in.length.value_or(0.0), f = in.sag.value_or(0.0);
-  if (in.upper_tension) return from_upper_tension(in);
+  if (in.upper_tension) return in.span && in.height ? from_upper_tension(in) : from_upper_tension_and(in);
   if (in.span && in.height && in.length) {
     const double chord = std::hypot(b, h);
     if (chord >= l) refuse("the height difference {:g} m is beyond reach: the chord, {:g} m, is not shorter than the cable, {:g} m", h, chord, l);

@@ -23,7 +23,7 @@ struct GeometryInput {
   std::optional<double> span = {}, height = {};   ///< b > 0, h >= 0 [m]
   std::optional<double> length = {}, sag = {};    ///< l, f > 0 [m]
   std::optional<double> horizontal_tension = {};  ///< H > 0 [N]
-  std::optional<double> upper_tension = {};       ///< static tension at the upper end [N]; needs span and height
+  std::optional<double> upper_tension = {};       ///< static tension at the upper end [N]
   double weight_per_length = 0.0;                 ///< mu g [N/m], needed with a tension
 };
 

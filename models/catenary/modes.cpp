@@ -6,12 +6,15 @@
 #include <numeric>
 
 #include "core/symmetric_pencil.hpp"
+#include "models/catenary/largest.hpp"
 
 namespace whirl::models::catenary {
 namespace {
 
 constexpr double small_tail = 1e-9;  // a frequency is off by its square
-constexpr int finer = 12;            // functions the count has beyond the solution
+constexpr int finer = 8;             // functions the count has beyond the solution
+constexpr int extra = 4;             // frequencies beyond those wanted, so that a gap is found
+constexpr int everything = 1 << 30;
 
 void check(const CoreCable& c) {
   if (!(c.x1 < c.x2)) throw std::invalid_argument(fmt::format("the ends of a cable must satisfy x1 < x2, got {:g} and {:g}", c.x1, c.x2));
@@ -20,50 +23,73 @@ void check(const CoreCable& c) {
     if (!(eta >= 0.0 && std::isfinite(eta))) throw std::invalid_argument(fmt::format("a drag must be >= 0, got {:g}", eta));
 }
 
-bool level(const CoreCable& c) { return std::abs(c.x1 + c.x2) < 1e-14 * (c.x2 - c.x1); }
-
-// Matrices of one parity with the functions they stand for.
-struct Pencil {
+// A discretisation with its matrices: functions of order k up to functions().
+struct InPlaneSystem {
+  static constexpr int kinds = 2;
+  InPlaneSystem(const CoreCable& c, int n) : kappa(c.kappa), g(c.x1, c.x2, n, c.kappa > 0.0), K(g.stiffness(kappa)), M(g.mass(kappa)) {}
+  std::vector<int> indices(Parity parity, int largest_k) const { return g.indices(kappa, parity, largest_k); }
+  int order(int i) const { return g.order(i); }
+  double kappa;
+  InPlaneGalerkin g;
   Matrix K, M;
-  std::vector<int> indices;
 };
+
+struct LateralSystem {
+  static constexpr int kinds = 1;
+  LateralSystem(const CoreCable& c, int n) : g(c.x1, c.x2, n), K(g.stiffness()), M(g.mass()) {}
+  std::vector<int> indices(Parity parity, int largest_k) const { return g.indices(parity, largest_k); }
+  int order(int i) const { return i; }
+  LateralGalerkin g;
+  Matrix K, M;
+};
+
+template <class System>
+std::vector<Parity> parities(const System& system) {
+  if (system.g.mesh().coordinate.level()) return {Parity::symmetric, Parity::antisymmetric};
+  return {Parity::both};
+}
 
 struct Solution {
-  Vector omega;  // all parities together, increasing
+  Vector omega;  // all parities together, increasing, some more than vectors
   Matrix q;      // coefficients in all functions, one column a mode
-  std::vector<Pencil> pencils;
 };
 
-template <class MakePencil>
-Solution solve(const CoreCable& c, int size, int count, MakePencil&& make) {
-  Solution s;
-  if (level(c)) s.pencils = {make(Parity::symmetric), make(Parity::antisymmetric)};
-  else s.pencils = {make(Parity::both)};
+// The lowest modes in the functions of order up to n.
+template <class System>
+Solution solve(const System& system, int n, int count) {
+  struct Place {
+    double omega;
+    std::size_t part;
+    Eigen::Index column;
+  };
   std::vector<PencilModes> parts;
-  std::vector<std::pair<double, std::pair<int, int>>> order;
-  for (const auto& p : s.pencils) {
-    parts.push_back(lowest_modes(p.K, p.M, count));
+  std::vector<std::vector<int>> where;
+  std::vector<Place> order;
+  for (const Parity parity : parities(system)) {
+    where.push_back(system.indices(parity, n));
+    parts.push_back(lowest_modes(pick(system.K, where.back()), pick(system.M, where.back()), count, true, extra));
     for (Eigen::Index i = 0; i < parts.back().omega.size(); ++i)
-      if (std::isfinite(parts.back().omega[i])) order.push_back({parts.back().omega[i], {int(parts.size()) - 1, int(i)}});
+      if (std::isfinite(parts.back().omega[i])) order.push_back({parts.back().omega[i], parts.size() - 1, i});
   }
-  std::sort(order.begin(), order.end());
-  if (order.size() > std::size_t(count)) order.resize(std::size_t(count));
-  s.omega.resize(Eigen::Index(order.size()));
-  s.q = Matrix::Zero(size, s.omega.size());
-  for (Eigen::Index j = 0; j < s.omega.size(); ++j) {
-    const auto [part, column] = order[std::size_t(j)].second;
-    s.omega[j] = order[std::size_t(j)].first;
-    const auto& where = s.pencils[std::size_t(part)].indices;
-    for (std::size_t i = 0; i < where.size(); ++i) s.q(where[i], j) = parts[std::size_t(part)].vectors(Eigen::Index(i), column);
+  std::sort(order.begin(), order.end(), [](const Place& a, const Place& b) { return a.omega < b.omega; });
+  if (order.size() > std::size_t(count + extra)) order.resize(std::size_t(count + extra));
+  Solution s{Vector(order.size()), Matrix::Zero(system.K.rows(), std::min<Eigen::Index>(count, Eigen::Index(order.size())))};
+  for (std::size_t j = 0; j < order.size(); ++j) {
+    s.omega[Eigen::Index(j)] = order[j].omega;
+    if (Eigen::Index(j) >= s.q.cols()) continue;
+    const auto& rows = where[order[j].part];
+    for (std::size_t i = 0; i < rows.size(); ++i) s.q(rows[i], Eigen::Index(j)) = parts[order[j].part].vectors(Eigen::Index(i), order[j].column);
   }
   return s;
 }
 
-// Largest of the last four coefficients of each kind of function, relative to the whole.
-double tail_of(const Vector& q, int n) {
-  double tail = q.segment(n - 4, 4).norm();
-  if (q.size() > n) tail += q.segment(2 * n - 4, 4).norm();
-  return tail / q.norm();
+// Coefficients of the four highest orders up to n, relative to the whole.
+template <class System>
+double tail_of(const System& system, const Vector& q, int n) {
+  double tail = 0.0;
+  for (Eigen::Index i = 0; i < q.size(); ++i)
+    if (const int k = system.order(int(i)); k > n - 4 && k <= n) tail += q[i] * q[i];
+  return std::sqrt(tail) / q.norm();
 }
 
 // The first gap behind the wanted modes that a count can stand in.
@@ -73,68 +99,77 @@ int counted_modes(const Vector& omega, int wanted) {
   return k;
 }
 
-constexpr int extra = 4;  // modes beyond those wanted, so that a gap is found
-
-// Adds functions until the highest mode is resolved; `at(n)` solves with n functions.
-template <class SolveWith>
-Solution resolve(ModeSet& set, const CoreCable& c, const ModeOptions& o, SolveWith&& at) {
-  int n = o.functions > 0 ? std::max(o.functions, 6) : functions_for(0.5 * (c.x2 - c.x1), o.count);
-  for (int round = 0;; ++round) {
-    Solution s = at(n);
-    set.functions = n;
-    const auto last = std::min<Eigen::Index>(o.count, s.omega.size()) - 1;
-    set.tail = last >= 0 ? tail_of(s.q.col(last), n) : 1.0;
-    set.resolved = last + 1 == o.count && set.tail < small_tail;
-    if (set.resolved || o.functions > 0 || round == 5) return s;
-    n += 8 + n / 4;
-  }
-}
-
-template <class CountBelow>
-void verify(ModeSet& set, const Vector& omega, int count, CountBelow&& below) {
+// Counts in all functions, `finer` more than were solved in: those of high order, stiff, first.
+template <class System>
+void verify(ModeSet& set, const System& system, const Vector& omega, int count) {
   set.expected = counted_modes(omega, std::min<int>(count, int(omega.size())));
   const bool gap = set.expected < omega.size();
   set.counted_below = gap ? 0.5 * (omega[set.expected - 1] + omega[set.expected]) : omega[set.expected - 1] * (1.0 + 1e-7);
-  set.counted = below(set.counted_below);
+  for (const Parity parity : parities(system)) {
+    auto rows = system.indices(parity, everything);
+    std::stable_sort(rows.begin(), rows.end(), [&](int a, int b) { return system.order(a) > system.order(b); });
+    const auto soft = std::count_if(rows.begin(), rows.end(), [&](int i) { return system.order(i) <= 2 * count + 4; });
+    const Matrix A = pick(system.K, rows) - set.counted_below * set.counted_below * pick(system.M, rows);
+    set.counted += negative_eigenvalues(A, A.rows() - soft);
+  }
 }
 
-// Largest displacement 1, V (or W) positive where the cable leaves its lower end.
-double scale_of(const Vector& first, const Vector& second) {
-  const double largest = std::sqrt((first.array().square() + second.array().square()).maxCoeff());
-  Eigen::Index i = 0;
-  while (i + 1 < second.size() && std::abs(second[i]) < 1e-3 * second.cwiseAbs().maxCoeff()) ++i;
-  return (second[i] < 0.0 ? -1.0 : 1.0) / largest;
-}
-
-Mode in_plane_mode(const InPlaneGalerkin& g, const Mirror& mirror, double kappa, double omega, const Vector& q) {
+Mode in_plane_mode(const InPlaneSystem& system, const Mirror& mirror, double omega, const Vector& q) {
+  const Mesh& mesh = system.g.mesh();
+  const auto at = system.g.nodal<double>(system.kappa, q, Eigen::Vector4d::Zero());
+  const double L = -omega * omega;
   Mode mode;
-  auto at = g.nodal<double>(kappa, q, Eigen::Vector4d::Zero());
-  const double scale = scale_of(at.U, at.V);
-  for (Vector* v : {&at.U, &at.V, &at.N}) *v *= scale;
   mode.omega = omega;
-  mode.field = field_of<double>(g.mesh(), at, -omega * omega, -omega * omega);
+  mode.field = field_of<double>(mesh, at, L, L);
+  const double scale = sign_at_lower_end(at.V) / largest_displacement<double>(mesh, mode.field, at, system.kappa, L, L);
+  mode.field.coefficients *= scale;
   mode.odd_share = mirror.odd_share(mode.field, Quantity::V);
   mode.kind = kind_of(mode.odd_share);
-  const Vector w = g.mesh().weight.cwiseProduct(g.mesh().c);
-  mode.modal_mass = w.dot(at.U.cwiseAbs2()) + w.dot(at.V.cwiseAbs2());
-  if (kappa > 0.0) mode.elastic_share = 1.0 - g.mesh().weight.dot(at.N.cwiseAbs2()) / (omega * omega * mode.modal_mass);
+  mode.modal_mass = scale * scale;  // q' M q = 1
+  if (system.kappa > 0.0) mode.elastic_share = 1.0 + mesh.weight.dot(at.N.cwiseAbs2()) / L;
   return mode;
 }
 
-Mode lateral_mode(const LateralGalerkin& g, const Mirror& mirror, double omega, const Vector& q) {
+Mode lateral_mode(const LateralSystem& system, const Mirror& mirror, double omega, const Vector& q) {
+  const Mesh& mesh = system.g.mesh();
+  const auto n = q.size();
+  Matrix at(mesh.t.size(), 2);
+  at.col(0) = system.g.W().leftCols(n) * q;
+  at.col(1) = system.g.W_slope().leftCols(n) * q;
   Mode mode;
-  Vector W = g.W().leftCols(g.size()) * q, slope = g.W_slope().leftCols(g.size()) * q;
-  const double scale = scale_of(Vector::Zero(W.size()), W);
-  W *= scale;
-  slope *= scale;
   mode.omega = omega;
-  mode.field = {g.mesh().x1, g.mesh().x2, Matrix(W.size(), 2)};
-  mode.field.coefficients.col(0) = g.mesh().project<double>(W);
-  mode.field.coefficients.col(1) = g.mesh().project<double>(slope);
+  mode.field = {mesh.coordinate, mesh.project(at)};
+  const double scale = sign_at_lower_end(at.col(0)) / largest_lateral(mesh, mode.field, at.col(0), -omega * omega);
+  mode.field.coefficients *= scale;
   mode.odd_share = mirror.odd_share(mode.field, Quantity::W);
   mode.kind = kind_of(mode.odd_share);
-  mode.modal_mass = g.mesh().weight.cwiseProduct(g.mesh().c).dot(W.cwiseAbs2());
+  mode.modal_mass = scale * scale;
   return mode;
+}
+
+// Adds functions until the highest mode is resolved, then counts.
+template <class System, class MakeMode>
+ModeSet modes_of(const CoreCable& c, const ModeOptions& o, MakeMode&& make) {
+  check(c);
+  o.validate();
+  ModeSet set;
+  int n = o.functions > 0 ? std::max(o.functions, 6) : functions_for(c, o.count);
+  for (int round = 0;; ++round, n += 8 + n / 4) {
+    const System system(c, o.verify ? n + finer : n);
+    const Solution s = solve(system, n, o.count);
+    const auto last = s.q.cols() - 1;
+    set.functions = n;
+    set.tail = last >= 0 ? tail_of(system, s.q.col(last), n) : 1.0;
+    set.resolved = last + 1 == o.count && set.tail < small_tail;
+    if (!set.resolved && o.functions == 0 && round < 5) continue;
+    if (o.verify && last >= 0) verify(set, system, s.omega, o.count);
+    std::optional<Mirror> mirror;
+    if (o.shapes) mirror.emplace(system.g.mesh());
+    for (Eigen::Index j = 0; j <= last; ++j)
+      if (o.shapes) set.modes.push_back(make(system, *mirror, s.omega[j], s.q.col(j)));
+      else set.modes.emplace_back().omega = s.omega[j];
+    return set;
+  }
 }
 
 }  // namespace
@@ -158,66 +193,7 @@ void ModeOptions::validate() const {
   if (functions < 0 || functions > 2000) throw std::invalid_argument(fmt::format("the number of functions must lie in [0, 2000], got {}", functions));
 }
 
-int functions_for(double m, int count) { return 24 + static_cast<int>(1.6 * count + (8.0 + 0.8 * m) * m); }
-
-ModeSet in_plane_modes(const CoreCable& c, const ModeOptions& o) {
-  check(c);
-  o.validate();
-  ModeSet set;
-  std::optional<InPlaneGalerkin> g;
-  const auto pencil_of = [&](const InPlaneGalerkin& galerkin) {
-    return [&, K = galerkin.stiffness(c.kappa), M = galerkin.mass(c.kappa)](Parity parity) -> Pencil {
-      const auto i = galerkin.indices(c.kappa, parity);
-      if (parity == Parity::both) return {K, M, i};
-      return {pick(K, i, i), pick(M, i, i), i};
-    };
-  };
-  const Solution s = resolve(set, c, o, [&](int n) {
-    g.emplace(c.x1, c.x2, n);
-    return solve(c, g->size(c.kappa), o.count + extra, pencil_of(*g));
-  });
-  if (o.verify)
-    verify(set, s.omega, o.count, [&](double omega) {
-      const InPlaneGalerkin fine(c.x1, c.x2, set.functions + finer);
-      const auto make = pencil_of(fine);
-      if (!level(c)) return frequencies_below(fine.stiffness(c.kappa), fine.mass(c.kappa), omega);
-      const Pencil even = make(Parity::symmetric), odd = make(Parity::antisymmetric);
-      return frequencies_below(even.K, even.M, omega) + frequencies_below(odd.K, odd.M, omega);
-    });
-  std::optional<Mirror> mirror;
-  if (o.shapes) mirror.emplace(g->mesh());
-  for (Eigen::Index j = 0; j < std::min<Eigen::Index>(o.count, s.omega.size()); ++j)
-    if (o.shapes) set.modes.push_back(in_plane_mode(*g, *mirror, c.kappa, s.omega[j], s.q.col(j)));
-    else set.modes.emplace_back().omega = s.omega[j];
-  return set;
-}
-
-ModeSet out_of_plane_modes(const CoreCable& c, const ModeOptions& o) {
-  check(c);
-  o.validate();
-  ModeSet set;
-  std::optional<LateralGalerkin> g;
-  const auto pencil_of = [](const LateralGalerkin& galerkin) {
-    return [&](Parity parity) -> Pencil {
-      const auto i = galerkin.indices(parity);
-      return {pick(galerkin.stiffness(), i, i), pick(galerkin.mass(), i, i), i};
-    };
-  };
-  const Solution s = resolve(set, c, o, [&](int n) {
-    g.emplace(c.x1, c.x2, n);
-    return solve(c, n, o.count + extra, pencil_of(*g));
-  });
-  if (o.verify)
-    verify(set, s.omega, o.count, [&](double omega) {
-      const LateralGalerkin fine(c.x1, c.x2, set.functions + finer);
-      return frequencies_below(fine.stiffness(), fine.mass(), omega);
-    });
-  std::optional<Mirror> mirror;
-  if (o.shapes) mirror.emplace(g->mesh());
-  for (Eigen::Index j = 0; j < std::min<Eigen::Index>(o.count, s.omega.size()); ++j)
-    if (o.shapes) set.modes.push_back(lateral_mode(*g, *mirror, s.omega[j], s.q.col(j)));
-    else set.modes.emplace_back().omega = s.omega[j];
-  return set;
-}
+ModeSet in_plane_modes(const CoreCable& c, const ModeOptions& o) { return modes_of<InPlaneSystem>(c, o, in_plane_mode); }
+ModeSet out_of_plane_modes(const CoreCable& c, const ModeOptions& o) { return modes_of<LateralSystem>(c, o, lateral_mode); }
 
 }  // namespace whirl::models::catenary

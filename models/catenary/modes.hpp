@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "models/catenary/field.hpp"
+#include "models/catenary/resolution.hpp"
 
 namespace whirl::models::catenary {
 
@@ -79,8 +80,5 @@ struct DampedSet {
 DampedSet damped_modes(const CoreCable& cable, const ModeOptions& options = {});
 /// Out of plane L3 = lambda^2 + eta3 lambda = -w^2 with the undamped w: both roots in closed form, that with Im lambda >= 0.
 std::complex<double> damped_root(double omega, double eta);
-
-/// Functions to start with for `count` modes on a cable of half width m.
-int functions_for(double m, int count);
 
 }  // namespace whirl::models::catenary

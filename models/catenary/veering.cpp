@@ -21,8 +21,8 @@ struct Spectrum {
 
 Spectrum spectrum(const InPlaneGalerkin& g, double kappa, Parity parity, int count) {
   const auto i = g.indices(kappa, parity);
-  const PencilModes modes = lowest_modes(pick(g.stiffness(kappa), i, i), pick(g.mass(kappa), i, i), count);
-  const Matrix K1 = pick(g.stiffness_slope(kappa), i, i), M1 = pick(g.mass_slope(kappa), i, i);
+  const PencilModes modes = lowest_modes(pick(g.stiffness(kappa), i), pick(g.mass(kappa), i), count);
+  const Matrix K1 = pick(g.stiffness_slope(kappa), i), M1 = pick(g.mass_slope(kappa), i);
   Spectrum s{modes.omega, Vector(modes.omega.size())};
   for (Eigen::Index k = 0; k < s.omega.size(); ++k) {
     const double w2 = s.omega[k] * s.omega[k];
@@ -39,6 +39,10 @@ std::pair<double, double> bracket(F&& f, double lower, double upper, double fl, 
 }
 
 }  // namespace
+
+int functions_for_range(double x1, double x2, double kappa_lower, double kappa_upper, int modes) {
+  return std::max(functions_for({.x1 = x1, .x2 = x2, .kappa = kappa_lower}, modes), functions_for({.x1 = x1, .x2 = x2, .kappa = kappa_upper}, modes));
+}
 
 FrequencyCurve::FrequencyCurve(double x1, double x2, int functions, double reference_omega)
     : Problem(2 * functions + 2, 1, false), g_(x1, x2, functions), reference_(reference_omega) {
@@ -67,7 +71,7 @@ void FrequencyCurve::update(double s) const {
 
 Vector FrequencyCurve::start(double kappa, int mode, Parity parity) const {
   const auto i = g_.indices(kappa, parity);
-  const PencilModes modes = lowest_modes(pick(g_.stiffness(kappa), i, i), pick(g_.mass(kappa), i, i), mode);
+  const PencilModes modes = lowest_modes(pick(g_.stiffness(kappa), i), pick(g_.mass(kappa), i), mode);
   if (mode < 1 || modes.omega.size() < mode) throw std::invalid_argument(fmt::format("there is no mode {}", mode));
   Vector u = Vector::Zero(size() + 1);
   for (std::size_t k = 0; k < i.size(); ++k) u[i[k]] = modes.vectors(Eigen::Index(k), mode - 1);
@@ -194,7 +198,7 @@ std::vector<Approach> closest_approaches(double x1, double x2, double kappa_lowe
     throw std::invalid_argument(fmt::format("the range of kappa must be positive and increasing, got {:g} to {:g}", kappa_lower, kappa_upper));
   if (count < 2 || scan_points < 2) throw std::invalid_argument("closest approaches need at least two modes and two points");
   const Vector s = Vector::LinSpaced(scan_points, 0.5 * std::log(kappa_lower), 0.5 * std::log(kappa_upper)).array().exp();
-  const InPlaneGalerkin g(x1, x2, functions_for(0.5 * (x2 - x1), count) + 6);
+  const InPlaneGalerkin g(x1, x2, functions_for_range(x1, x2, kappa_lower, kappa_upper, count) + 6);
   std::vector<Approach> found;
   if (std::abs(x1 + x2) < 1e-14 * (x2 - x1)) find_crossings(g, s, count, found);
   else find_approaches(g, s, count, found);

@@ -20,6 +20,9 @@
 
 namespace whirl::models::catenary {
 
+/// Functions that resolve so many modes at any flexibility of a range.
+int functions_for_range(double x1, double x2, double kappa_lower, double kappa_upper, int modes);
+
 class FrequencyCurve : public Problem {
  public:
   FrequencyCurve(double x1, double x2, int functions, double reference_omega = 1.0);

@@ -1,6 +1,7 @@
 // Cost of hanging-cable frequencies, sweeps and forced motion. Compare ratios within one run: machines are noisy.
 #include <benchmark/benchmark.h>
 
+#include "core/memory.hpp"
 #include "core/parallel.hpp"
 #include "models/catenary/forced.hpp"
 #include "models/catenary/gale_series.hpp"
@@ -11,6 +12,8 @@ using namespace whirl;
 using namespace whirl::models::catenary;
 
 namespace {
+
+const bool as_the_program_does = (keep_freed_memory(), true);
 
 CoreCable cable(double m, double h, double kappa) {
   const Geometry g = unit_geometry(m, h);

@@ -1,9 +1,11 @@
 // Gauss rules and Legendre families; definite pencils with their inertia count.
+#include <Eigen/Eigenvalues>
 #include <catch2/catch.hpp>
 #include <cmath>
 
 #include "core/legendre.hpp"
 #include "core/symmetric_pencil.hpp"
+#include "core/tridiagonal_vectors.hpp"
 
 using namespace whirl;
 
@@ -54,4 +56,43 @@ TEST_CASE("symmetric pencil: inertia counts and refusals") {
   CHECK(modes.vectors.col(1).dot(M * modes.vectors.col(1)) == Approx(1.0));
   CHECK_THROWS_AS(lowest_modes(-K, M, 1), std::invalid_argument);
   CHECK_THROWS_AS(lowest_modes(K, Matrix::Zero(2, 2), 1), std::invalid_argument);
+}
+
+TEST_CASE("symmetric pencil: a few modes are those of all") {
+  std::srand(7);
+  for (const int n : {6, 25, 80}) {
+    const Matrix a = Matrix::Random(n, n), b = Matrix::Random(n, n);
+    const Matrix K = a * a.transpose() + Matrix::Identity(n, n), M = b * b.transpose();
+    const PencilModes few = lowest_modes(K, M, 5, true, 3);
+    const Eigen::GeneralizedSelfAdjointEigenSolver<Matrix> all(M, K);
+    REQUIRE(few.vectors.cols() == std::min(5, n));
+    REQUIRE(few.omega.size() == std::min(8, n));
+    for (Eigen::Index i = 0; i < few.omega.size(); ++i) CHECK(few.omega[i] == Approx(1.0 / std::sqrt(all.eigenvalues()[n - 1 - i])).epsilon(1e-11));
+    const Matrix& q = few.vectors;
+    CHECK((q.transpose() * M * q - Matrix::Identity(q.cols(), q.cols())).cwiseAbs().maxCoeff() < 1e-10);
+    for (Eigen::Index i = 0; i < q.cols(); ++i)
+      CHECK((K * q.col(i) - few.omega[i] * few.omega[i] * M * q.col(i)).norm() < 1e-9 * (K * q.col(i)).norm() * n);
+    for (const double w : {0.5 * few.omega[0], 0.5 * (few.omega[2] + few.omega[3]), 3.0 * few.omega[4]})
+      for (const int stiff : {0, n / 3, n - 1, n}) CHECK(frequencies_below(K, M, w, stiff) == frequencies_below(K, M, w));
+  }
+}
+
+TEST_CASE("tridiagonal vectors: equal and nearly equal eigenvalues, blocks that fall apart") {
+  // Twin wells: eigenvalues in pairs, closer than rounding. And a diagonal with equal entries.
+  const int n = 41;
+  Vector d(n), e = Vector::Constant(n - 1, 1.0);
+  for (int i = 0; i < n; ++i) d[i] = std::abs(i - n / 2);
+  for (const bool diagonal : {false, true}) {
+    if (diagonal) {
+      e.setZero();
+      d.head(10).setConstant(99.0);
+    }
+    Matrix T = d.asDiagonal();
+    T.diagonal(1) = T.diagonal(-1) = e;
+    const Vector mu = Eigen::SelfAdjointEigenSolver<Matrix>(T).eigenvalues().reverse();
+    Matrix z;
+    REQUIRE(tridiagonal_vectors(d, e, mu.head(12), z));
+    CHECK((z.transpose() * z - Matrix::Identity(12, 12)).cwiseAbs().maxCoeff() < 1e-11);
+    CHECK((T * z - z * mu.head(12).asDiagonal()).cwiseAbs().maxCoeff() < 1e-11);
+  }
 }

@@ -2,86 +2,10 @@
 #include <cmath>
 
 #include "models/catenary/backbone.hpp"
+#include "tests/models/catenary/chain.hpp"
 #include "tests/models/catenary/reference.hpp"
 
 using namespace catenary_test;
-
-namespace {
-
-// Masses ds at interior nodes of a polygon with equal sides ds, horizontal tension 1, unit weight per length: in equilibrium exactly. A side pulls
-// with T0 + (l/ds - 1)/kappa. Integrated by leapfrog from W = A phi and the motion in plane that goes with it.
-class Chain {
- public:
-  Chain(const Geometry& g, double kappa, int sides) : kappa_(kappa), n_(sides), slope1_(std::sinh(g.x1)), ds_((std::sinh(g.x2) - slope1_) / sides) {
-    rest_.assign(3 * std::size_t(n_ + 1), 0.0);
-    for (int i = 0; i < n_; ++i) {
-      const double slope = slope1_ + (i + 0.5) * ds_, c = std::sqrt(1.0 + slope * slope);
-      tension_.push_back(c);
-      rest_[at(i + 1)] = rest_[at(i)] + ds_ / c;
-      rest_[at(i + 1) + 1] = rest_[at(i) + 1] + ds_ * slope / c;
-    }
-  }
-
-  // Mean frequency of sum phi W over `periods` periods.
-  double frequency(const std::vector<double>& phi, const Backbone& b, double A, int periods) const {
-    std::vector<double> x = rest_, v(x.size(), 0.0), a(x.size(), 0.0);
-    for (int i = 1; i < n_; ++i) {
-      const double sinh_x = slope1_ + i * ds_, c = std::sqrt(1.0 + sinh_x * sinh_x), place = std::asinh(sinh_x);
-      const double U = A * A * (b.steady.at(place, Quantity::U) + b.twice.at(place, Quantity::U));
-      const double V = A * A * (b.steady.at(place, Quantity::V) + b.twice.at(place, Quantity::V));
-      x[at(i)] += (U - V * sinh_x) / c;
-      x[at(i) + 1] += (U * sinh_x + V) / c;
-      x[at(i) + 2] = A * phi[std::size_t(i)];
-    }
-    const double dt = 0.4 * ds_ * std::sqrt(kappa_);  // a fifth of the limit: its error, 1e-5 of w at most, is the same at every amplitude
-    forces(x, a);
-    double before = 1.0, first = -1.0, last = 0.0;
-    int crossings = 0;
-    for (long step = 1; crossings < 2 * periods + 1; ++step) {
-      for (std::size_t k = 0; k < x.size(); ++k) v[k] += 0.5 * dt * a[k];
-      for (std::size_t k = 0; k < x.size(); ++k) x[k] += dt * v[k];
-      forces(x, a);
-      for (std::size_t k = 0; k < x.size(); ++k) v[k] += 0.5 * dt * a[k];
-      double q = 0.0;
-      for (int i = 0; i <= n_; ++i) q += phi[std::size_t(i)] * x[at(i) + 2];
-      if (step > 1 && q * before < 0.0) {
-        last = dt * (double(step) - q / (q - before));
-        if (first < 0.0) first = last;
-        ++crossings;
-      }
-      before = q;
-    }
-    return 2.0 * 3.14159265358979324 * periods / (last - first);
-  }
-
- private:
-  static std::size_t at(int node) { return 3 * std::size_t(node); }
-  void forces(const std::vector<double>& x, std::vector<double>& a) const {
-    std::fill(a.begin(), a.end(), 0.0);
-    for (int i = 0; i < n_; ++i) {
-      double d[3], l = 0.0;
-      for (std::size_t k = 0; k < 3; ++k) {
-        d[k] = x[at(i + 1) + k] - x[at(i) + k];
-        l += d[k] * d[k];
-      }
-      l = std::sqrt(l);
-      const double T = tension_[std::size_t(i)] + (l / ds_ - 1.0) / kappa_;
-      for (std::size_t k = 0; k < 3; ++k) {
-        a[at(i) + k] += T * d[k] / (l * ds_);
-        a[at(i + 1) + k] -= T * d[k] / (l * ds_);
-      }
-    }
-    for (int i = 1; i < n_; ++i) a[at(i) + 1] -= 1.0;
-    for (std::size_t k = 0; k < 3; ++k) a[k] = a[at(n_) + k] = 0.0;
-  }
-
-  double kappa_;
-  int n_;
-  double slope1_, ds_;
-  std::vector<double> rest_, tension_;
-};
-
-}  // namespace
 
 TEST_CASE("catenary backbone: taut string under uniform tension") {
   const double m = 1e-3, kappa = 1e-3, p = 3.14159265358979324 / (2.0 * m);
@@ -107,13 +31,17 @@ TEST_CASE("catenary backbone: a chain of masses swings as predicted", "[slow]") 
     const Geometry g = unit_geometry(m, h);
     const Backbone b = lateral_backbone(core(g, kappa), 1);
     const Mode swing = out_of_plane_modes(core(g, kappa), {.count = 1}).modes[0];
-    const int sides = 60;
-    std::vector<double> phi;
-    for (int i = 0; i <= sides; ++i)
-      phi.push_back(swing.field.at(std::asinh(std::sinh(g.x1) + (std::sinh(g.x2) - std::sinh(g.x1)) * i / sides), Quantity::W));
-    const Chain chain(g, kappa, sides);
-    const double small = 0.02, base = chain.frequency(phi, b, small, 40);
-    const auto curvature = [&](double A) { return (chain.frequency(phi, b, A, 40) / base - 1.0) / (A * A - small * small); };
+    const Chain chain(g, kappa, 60);
+    const auto shape = chain.displaced([&](double x) { return std::array{0.0, 0.0, swing.field.at(x, Quantity::W)}; });
+    const auto frequency = [&](double A) {
+      return chain.frequency(shape, chain.displaced([&](double x) {
+        const auto follow = [&](Quantity quantity) { return A * A * (b.steady.at(x, quantity) + b.twice.at(x, quantity)); };
+        return std::array{follow(Quantity::U), follow(Quantity::V), A * swing.field.at(x, Quantity::W)};
+      }),
+                             40);
+    };
+    const double small = 0.02, base = frequency(small);
+    const auto curvature = [&](double A) { return (frequency(A) / base - 1.0) / (A * A - small * small); };
     // The curvature measured at an amplitude differs from that at rest by its square; two amplitudes take that out.
     const double A = 0.06, larger = 0.1, at = curvature(A), measured = at - (curvature(larger) - at) * A * A / (larger * larger - A * A);
     INFO("m " << m << " h " << h << " predicted " << b.curvature << " measured " << measured << " direct " << b.direct);

@@ -63,6 +63,32 @@ TEST_CASE("catenary: every sufficient set gives the same cable") {
     }
 }
 
+TEST_CASE("catenary: the tension at the upper end with any two of the others") {
+  const double weight = 98.1;
+  for (const double height : {20.0, 90.0})
+    for (const double length : {140.0, 200.0}) {
+      const Geometry g = geometry({.span = 100.0, .height = height, .length = length});
+      const double tension = weight * g.a * std::cosh(g.x2);
+      const GeometryInput pairs[] = {{.span = 100.0, .length = length},
+                                     {.span = 100.0, .sag = g.sag},
+                                     {.height = height, .length = length},
+                                     {.height = height, .sag = g.sag},
+                                     {.length = length, .sag = g.sag}};
+      for (GeometryInput in : pairs) {
+        in.upper_tension = tension;
+        in.weight_per_length = weight;
+        const Geometry k = geometry(in);
+        INFO("height " << height << " length " << length << " span " << k.span << " height " << k.height << " sag " << k.sag);
+        CHECK(weight * k.a * std::cosh(k.x2) == Approx(tension).epsilon(1e-11));
+        if (in.span) CHECK(k.span == Approx(*in.span).epsilon(1e-9));
+        if (in.height) CHECK(k.height == Approx(*in.height).epsilon(1e-9));
+        if (in.length) CHECK(k.length == Approx(*in.length).epsilon(1e-9));
+        if (in.sag) CHECK(k.sag == Approx(*in.sag).epsilon(1e-9));
+        CHECK(k.a > g.a * (1.0 - 1e-9));  // this cable, or a tauter one with the same three
+      }
+    }
+}
+
 TEST_CASE("catenary: what cannot hang is refused in one line") {
   const auto refusal = [](const GeometryInput& in) {
     try {
@@ -83,6 +109,9 @@ TEST_CASE("catenary: what cannot hang is refused in one line") {
   CHECK_THAT(refusal({.span = 80.0, .height = 0.0, .length = 90.0, .sag = 1.0}), Catch::Contains("exactly three"));
   CHECK_THAT(refusal({.span = 80.0, .height = 0.0, .horizontal_tension = 1.0}), Catch::Contains("weight per length"));
   CHECK_THAT(refusal({.span = 80.0, .height = 0.0, .upper_tension = 10.0, .weight_per_length = 10.0}), Catch::Contains("out of reach"));
+  CHECK_THAT(refusal({.span = 80.0, .length = 100.0, .upper_tension = 10.0, .weight_per_length = 10.0}),
+             Catch::Contains("no cable with the other two"));
+  CHECK_THAT(refusal({.span = 80.0, .horizontal_tension = 9.0, .upper_tension = 10.0, .weight_per_length = 1.0}), Catch::Contains("only one"));
   CHECK_THAT(refusal({.span = 1.0, .height = 0.0, .length = 1e8}), Catch::Contains("too deep"));
   CHECK_THAT(refusal({.span = 1.0, .height = 0.0, .horizontal_tension = 1e9, .weight_per_length = 1.0}), Catch::Contains("too taut"));
 }

@@ -181,6 +181,31 @@ TEST_CASE("catenary modes: none is missing, counted by conjugate points of the c
   }
 }
 
+TEST_CASE("catenary modes: deep cables, counted by conjugate points too") {
+  for (const auto& [m, h, kappa] : {std::tuple{5.0, 0.3, 0.0}, {5.0, 0.0, 1e-3}, {6.5, 1.0, 1e-4}}) {
+    const Geometry g = unit_geometry(m, h);
+    const ModeSet set = in_plane_modes(core(g, kappa), {.count = 8});
+    CHECK(set.complete());
+    CHECK(set.functions < 90);  // polynomials in x itself: over 100
+    for (const std::size_t k : {0, 3, 7}) {
+      INFO("m " << m << " h " << h << " kappa " << kappa << " mode " << k);
+      CHECK(conjugate_points(core(g, kappa), set.modes[k].omega * (1.0 - 1e-6)) == int(k));
+      CHECK(conjugate_points(core(g, kappa), set.modes[k].omega * (1.0 + 1e-6)) == int(k) + 1);
+    }
+  }
+}
+
+TEST_CASE("catenary modes: the largest displacement is 1 on the continuous cable") {
+  for (const auto& [m, h, kappa] : {std::tuple{0.05, 0.0, 0.0}, {1.0, 0.5, 1e-3}, {3.0, 0.2, 0.0}}) {
+    const CoreCable cable = core(unit_geometry(m, h), kappa);
+    const Vector x = Vector::LinSpaced(20001, cable.x1, cable.x2);
+    for (const Mode& mode : in_plane_modes(cable, {.count = 12}).modes)
+      CHECK((mode.field.at(x, Quantity::U).cwiseAbs2() + mode.field.at(x, Quantity::V).cwiseAbs2()).maxCoeff() == Approx(1.0).epsilon(2e-6));
+    for (const Mode& mode : out_of_plane_modes(cable, {.count = 12}).modes)
+      CHECK(mode.field.at(x, Quantity::W).cwiseAbs().maxCoeff() == Approx(1.0).epsilon(2e-6));  // sampled: waves / 20001
+  }
+}
+
 TEST_CASE("catenary modes: a hundred, none missed", "[slow]") {
   for (const double kappa : {0.0, 1e-3}) {
     const Geometry g = unit_geometry(1.0, 0.5);

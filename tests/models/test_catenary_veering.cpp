@@ -57,7 +57,7 @@ TEST_CASE("catenary veering: crossings at h = 0, by the walker and by their own 
     const int n = int(t(i, "pair n (sym n = antisym n)"));
     if (m < 0.05 || n > 1) continue;
     INFO("walker, b/2a " << m);
-    const FrequencyCurve curve(-m, m, functions_for(m, 4), t(i, "omega_cross"));
+    const FrequencyCurve curve(-m, m, functions_for_range(-m, m, 0.6 * kappa, 1.6 * kappa, 4), t(i, "omega_cross"));
     WalkOptions options;
     options.lower = std::sqrt(0.6 * kappa);
     options.upper = std::sqrt(1.6 * kappa);

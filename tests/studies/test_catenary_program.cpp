@@ -46,6 +46,12 @@ TEST_CASE("catenary-modes: frequencies in SI and as ratios, shapes, sweep, serie
   CHECK(t.columns[1].values[0] == Approx(numbers(r.out, "omega_ratio")[0] * unit).epsilon(1e-12));
   CHECK(t.columns[2].values[0] == Approx(t.columns[1].values[0] / (2.0 * 3.14159265358979324)).epsilon(1e-12));
   CHECK(file.column("/modes/in_plane", "decay").values[0] == Approx(0.025).epsilon(0.2));  // drag 0.5 over twice 10 kg/m, less its tangential share
+  CHECK(file.column("/modes/damped", "decay").values[7] == Approx(0.025).epsilon(0.2));
+  CHECK(file.column("/modes/damped", "damping_ratio").values[0] ==
+        Approx(0.025 / file.column("/modes/damped", "damped_omega").values[0]).epsilon(0.2));
+  const auto amplitude = file.column("/shapes/damped/mode3", "V").values, phase = file.column("/shapes/damped/mode3", "V_phase").values;
+  CHECK(*std::max_element(amplitude.begin(), amplitude.end()) == Approx(0.99).margin(0.02));
+  CHECK(*std::max_element(phase.begin(), phase.end()) != *std::min_element(phase.begin(), phase.end()));  // unequal drag: not in step
   CHECK(file.column("/shapes/in_plane/mode3", "V").values.front() == Approx(0.0).epsilon(0).margin(1e-9));
   CHECK(file.column("/sweep/out_of_plane/h0.5", "w1").values.size() == 3);
 
@@ -98,6 +104,43 @@ TEST_CASE("veering: crossings by both ways, least gap, hybrid modes") {
   CHECK(std::any_of(gap.begin(), gap.end(), [](double g) { return std::abs(g - 0.0177603) < 1e-6; }));
   CHECK(file.number_attribute("/hybrid/h0.1/closest", "odd_lower") == Approx(0.5).epsilon(0).margin(0.1));
   CHECK(file.has("/fan/h0"));
+}
+
+TEST_CASE("catenary-modes: a nonlinear model that other kinds take; the asymptotic formula in the sweep") {
+  const Folder f;
+  const Ran r = program(f, "run " + study("catenary-modes") +
+                               "--set cable.height_difference=20 --set cable.length=160 --set drag.normal=0.2 --set drag.lateral=0.2 "
+                               "--set reduced.out_of_plane=1 --set reduced.in_plane=3 --set sweep.height_over_span=[0] --set sweep.points=3 -o m.h5");
+  INFO(r.err);
+  REQUIRE(r.status == 0);
+  ResultReader file(f.path / "m.h5");
+  const auto exact = file.column("/sweep/in_plane/h0", "w6").values, formula = file.column("/sweep/in_plane/h0", "asymptotic6").values;
+  for (std::size_t i = 0; i < 3; ++i) CHECK(formula[i] == Approx(exact[i]).epsilon(1e-3));
+  const std::string model = file.text("/reduced", "modal_model"),
+                    example = slurp(study("deep-cable-swing").substr(0, study("deep-cable-swing").size() - 1));
+  CHECK(example.find(model.substr(0, model.find("term"))) != std::string::npos);  // the example is this model
+  std::ofstream(f.path / "p.toml") << "study = \"periodic\"\n"
+                                   << model << "force = [{ equation = 3, amplitude = 0.2 }]\n[continuation]\nrange = [0.85, 1.3]\n";
+  const Ran p = program(f, "run p.toml --json -o p.h5");
+  INFO(p.err);
+  REQUIRE(p.status == 0);
+  const auto at = numbers(p.out, "omega");  // the swing begins at half the frequency on either side of twice its own, 2 x 0.47468 rad/s
+  for (const double edge : {0.94171764894, 0.97871996656})
+    CHECK(std::any_of(at.begin(), at.end(), [&](double w) { return std::abs(w - edge) < 1e-7; }));
+  CHECK(program(f, "run " + study("catenary-modes") + "--set reduced.out_of_plane=7 --set reduced.in_plane=6 -o x.h5").status == 2);
+}
+
+TEST_CASE("catenary-modes: modes that drag keeps from oscillating are told") {
+  const Folder f;
+  const Ran r =
+      program(f, "run " + study("catenary-modes") + "--set drag.normal=30 --set drag.tangential=30 --set sweep.height_over_span=[] -o m.h5");
+  INFO(r.err);
+  REQUIRE(r.status == 0);
+  CHECK(r.err.find("2 roots do not oscillate") != std::string::npos);  // drag over mass 3 > 2 x 1.24 rad/s
+  ResultReader file(f.path / "m.h5");
+  CHECK(file.numbers_attribute("/modes/damped", "overdamped_decay").size() == 2);
+  const double omega = file.column("/modes/in_plane", "omega").values[1];  // equal drag: w^2 - 1.5^2
+  CHECK(file.column("/modes/damped", "damped_omega").values[0] == Approx(std::sqrt(omega * omega - 2.25)).epsilon(1e-9));
 }
 
 TEST_CASE("hanging cables: bad input gives one clear line and nothing else") {
