@@ -90,8 +90,9 @@ void Curve::right_side(In u, In anchor) {
   rhs_[state_] = -off;
 }
 
-Curve::Report Curve::correct(Out u, In normal, In anchor) {
+Curve::Report Curve::correct(Out u, In normal, In anchor, bool strict) {
   Report report;
+  const double last_step = strict ? std::min(options_.last_step, 1e-14) : options_.last_step;
   double previous = 0.0;
   normal_ = normal.array() * weight_.array();
   for (;;) {
@@ -99,7 +100,7 @@ Curve::Report Curve::correct(Out u, In normal, In anchor) {
     report.residual = r_.lpNorm<Eigen::Infinity>();
     if (!std::isfinite(report.residual)) return report;  // of the Jacobian: the step or the tangent is not finite then
     border();
-    if (report.iterations > 0 && settle(u, anchor, previous, report)) return report;
+    if (report.iterations > 0 && settle(u, anchor, previous, last_step, report)) return report;
     if (report.iterations == options_.max_iterations) return report;
     lu_.compute(bordered_);
     right_side(u, anchor);
@@ -116,15 +117,15 @@ Curve::Report Curve::correct(Out u, In normal, In anchor) {
 }
 
 // A last step with the factors of the step before it, if it contracts enough; else nothing happens. The tangent's first guess comes along.
-bool Curve::settle(Out u, In anchor, double previous, Report& report) {
+bool Curve::settle(Out u, In anchor, double previous, double last_step, Report& report) {
   right_side(u, anchor);
   lu_.solve_two(rhs_, last_, solution_, tangent_);
   // Where the step before was tiny, what this one adds is rounding and says nothing of the contraction: that is at most most_curved times it.
   constexpr double most_curved = 1e3, tiny = 1e-6;
-  const double size = length_of(solution_), rate = std::min(size / previous, most_curved * previous);
+  const double size = length_of(solution_), rate = size > 0.0 ? std::min(size / previous, most_curved * previous) : 0.0;
   if (report.iterations == 1) report.contraction = rate;
   const bool rounding = previous < tiny && size > 0.1 * previous && size < tiny;
-  if (!(size == 0.0 || rounding || (size <= options_.last_step && size * rate < options_.tolerance))) return false;
+  if (!(size == 0.0 || rounding || (size <= last_step && size * rate < options_.tolerance))) return false;
   spread(solution_, 1.0, step_);
   u += step_;
   ++report.iterations;
@@ -222,7 +223,7 @@ bool Curve::count_multipliers(In u, Signature& signature) {
 
 bool Curve::sample(In guess, In normal, Sample& out) {
   out.u = guess;
-  const Report report = correct(out.u, normal, guess);
+  const Report report = correct(out.u, normal, guess, true);
   out.tangent.resize(f_.size() + 1);
   if (!report.ok || !complete(out.u, out.tangent, out.signature)) return false;
   out.residual = report.residual;

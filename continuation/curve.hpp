@@ -81,8 +81,9 @@ class Curve {
     return std::sqrt((a.array().square() * weight_.array()).sum());
   }
 
-  /// Newton onto the curve within the plane through `anchor` normal to `normal`. On success Jacobian and factors are kept for `complete`.
-  Report correct(Out u, In normal, In anchor);
+  /// Newton onto the curve within the plane through `anchor` normal to `normal`. On success Jacobian and factors are kept for `tangent`.
+  /// `strict`: the Jacobian is that of the point to rounding, as signs beside a branch point need it.
+  Report correct(Out u, In normal, In anchor, bool strict = false);
   /// Tangent at the point just corrected, positive along the normal of `correct`. False if singular or non-finite.
   bool tangent(Out tangent);
   /// Spectrum and signature there; false if they cannot be computed.
@@ -109,7 +110,7 @@ class Curve {
   double length_of(const Vector& from) const;
   void subtract_product(const Vector& x, Vector& y) const;
   void right_side(In u, In anchor);
-  bool settle(Out u, In anchor, double previous, Report& report);
+  bool settle(Out u, In anchor, double previous, double last_step, Report& report);
   bool refine_tangent();
   void block_determinants(Signature& signature, bool forward);
   bool count_multipliers(In u, Signature& signature);

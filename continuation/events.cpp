@@ -266,6 +266,7 @@ bool EventFinder::solve(const Kind& kind, const Sample& near, SpecialPoint& out,
       else return false;
       break;
     case EventType::hopf:
+      if (!(frequency > 0.0) && !(near.kappa[static_cast<std::size_t>(kind.block)] > 0.0)) return false;  // no pair here
       system = std::make_unique<HopfSystem>(f, state, block, near.u,
                                             frequency > 0.0 ? frequency * frequency : near.kappa[static_cast<std::size_t>(kind.block)]);
       break;
@@ -397,7 +398,23 @@ bool EventFinder::turns_at_branch_point(const std::vector<Kind>& shown, const Sp
   const auto has = [&](EventType type) {
     return std::any_of(shown.begin(), shown.end(), [type](const Kind& k) { return k.type == type && k.block == 0; });
   };
-  if (!has(EventType::fold) || !has(EventType::branch_point)) return false;
+  return has(EventType::fold) && has(EventType::branch_point) && upright(point);
+}
+
+void EventFinder::drop_turns_at_branch_points(std::vector<SpecialPoint>& special) const {
+  constexpr double near = 1e-5;  // a hundredth of a short step
+  std::vector<Vector> turns;
+  for (const auto& p : special)
+    if (p.type == EventType::branch_point && p.block == 0 &&
+        std::any_of(special.begin(), special.end(), [&](const auto& q) { return q.type == EventType::fold && curve_.length(p.u - q.u) < near; }) &&
+        upright(p))
+      turns.push_back(p.u);
+  std::erase_if(special, [&](const SpecialPoint& q) {
+    return q.type == EventType::fold && std::any_of(turns.begin(), turns.end(), [&](const Vector& u) { return curve_.length(u - q.u) < near; });
+  });
+}
+
+bool EventFinder::upright(const SpecialPoint& point) const {
   const Problem& f = curve_.problem();
   Matrix j(f.size(), f.size() + f.parameters());
   f.jacobian(point.u, j);

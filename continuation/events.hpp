@@ -35,6 +35,9 @@ class EventFinder {
   /// A branch point next to `near`, where a walk can go no further because its range ends on it.
   bool branch_point_at(const Sample& near, SpecialPoint& out);
 
+  /// Drops the folds that the turn of a branch upright at its branch point looks like, where rounding had both found apart.
+  void drop_turns_at_branch_points(std::vector<SpecialPoint>& special) const;
+
   /// The branch point on the symmetric branch that lies between a and b if reflection `r` of the problem changes the sign of a state's odd part.
   bool mirror_crossing(const Sample& a, const Sample& b, int r, SpecialPoint& out);
 
@@ -56,6 +59,7 @@ class EventFinder {
   void find_coincident(const Kind& kind, const SpecialPoint& point, const Sample& left, const Sample& right, double delta, int pairs_left,
                        int pairs_right);
   bool turns_at_branch_point(const std::vector<Kind>& shown, const SpecialPoint& point) const;
+  bool upright(const SpecialPoint& point) const;
   void find_further_pairs(const Kind& kind, const SpecialPoint& point, const Sample& left, const Sample& right, double delta);
   bool locate_multiple(const Sample& a, const Sample& b);
   void report_unresolved(const Sample& a, const Sample& b);

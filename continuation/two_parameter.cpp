@@ -265,6 +265,10 @@ void Follower::locate(const Branch& b, int i, const Test& test, double from, dou
   }
   // A pole changes sign as well; at a zero the function is small next to what it was at the ends.
   if (std::abs(test.value(m.u)) > 1e-3 * std::max(std::abs(from), std::abs(to))) return;
+  // At a Bogdanov-Takens point the first Lyapunov coefficient ends.
+  if (const auto* hopf = dynamic_cast<const HopfSystem*>(system_.get());
+      hopf && test.type == "GH" && hopf->kappa(m.u) < 1e-6 * std::max(std::abs(hopf->kappa(a.u)), std::abs(hopf->kappa(d.u))))
+    return;
   CodimensionTwo s;
   s.type = test.type;
   s.u = base(m.u);

@@ -99,6 +99,7 @@ Branch Walker::walk_from(const Vector& u0, const Vector& direction, bool from_br
     lengthen_step();
   }
   s_->branch.stop_reason = s_->stop;
+  s_->finder.drop_turns_at_branch_points(s_->branch.special);
   s_->branch.sort_special();
   return std::move(s_->branch);
 }
@@ -217,7 +218,9 @@ bool Walker::correct() {
   const double angle = std::sqrt(2.0 - 2.0 * cosine), limit = s.max_turn;  // as chords
   const bool first_off_branch_point = s.accepted == 0 && !s.has_signature;
   const double by_angle = angle / (0.6 * limit);
-  const double by_contraction = std::sqrt(s.report.contraction / 0.05), by_distance = std::sqrt(s.report.first_step / 5e-3);
+  // The first correction, also against the step: a curve more crooked than the step is long is far from where the cubic leads.
+  const double by_contraction = std::sqrt(s.report.contraction / 0.05), by_distance = std::sqrt(s.report.first_step / std::min(5e-3, 0.05 * s.step));
+  if (s.report.first_step > 0.2 * s.step && !first_off_branch_point && s.step > 4.0 * options_.min_step) return false;
   s.factor = std::clamp(std::max({by_angle, by_contraction, by_distance}), 0.5, 2.0);
   if (angle > limit && !first_off_branch_point && s.step > 4.0 * options_.min_step) return false;
   s.step_taken = s.curve.length(s.next->u - s.now->u);

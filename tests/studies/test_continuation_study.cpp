@@ -107,7 +107,7 @@ TEST_CASE("charts of systems given as expressions", "[continuation_study][publis
 }
 
 TEST_CASE("one chart with every codimension-2 point", "[continuation_study][published]") {
-  const Folder f;
+  const RunFolder f;
   const Ran r = f.run(study("lorenz-84-chart.toml") + " --json");
   CHECK(r.status == 0);
   for (const double T : values(r.out, "HH", "T")) CHECK(std::abs(std::abs(T) - 0.02627393) < 1e-6);  // published digits
@@ -116,7 +116,7 @@ TEST_CASE("one chart with every codimension-2 point", "[continuation_study][publ
 }
 
 TEST_CASE("eight branches leave a double zero, each told where it was born", "[continuation_study]") {
-  const Folder f;
+  const RunFolder f;
   const Ran r = f.run(study("two-modes-pitchforks.toml") + " --json");
   CHECK(r.status == 0);
   CHECK(r.out.find("\"subtype\": \"multiple\"") != std::string::npos);
@@ -126,7 +126,7 @@ TEST_CASE("eight branches leave a double zero, each told where it was born", "[c
 }
 
 TEST_CASE("a closed curve between the ends of the range is found without a seed", "[continuation_study]") {
-  const Folder f;
+  const RunFolder f;
   std::string text = cusp;
   text = std::regex_replace(text, std::regex("mu \\+ lambda\\*x - x\\^3"), "lambda - x^2 - 16*mu^2");
   const Ran r = f.run_text(text, "--json");
