@@ -28,8 +28,13 @@ void quadratic_roots(double p, double q, std::complex<double>& z0, std::complex<
 }
 
 bool RealFactors::eigenvalues(const Matrix& a, std::complex<double>* z) {
-  known_ = known_ && (a.rows() == 3 ? three(a, z) : four(a, z));
-  return known_;
+  if (!known_) return false;
+  const double p = p_, q = q_;
+  known_ = a.rows() == 3 ? three(a, z) : four(a, z);
+  if (known_ || a.rows() == 3 || (p == p_before_ && q == q_before_)) return known_;
+  p_ = p_before_ = p;  // the matrices have not gone on steadily: from where the last one stood
+  q_ = q_before_ = q;
+  return known_ = four(a, z);
 }
 
 void RealFactors::restart(const std::complex<double>* z, int m) {

@@ -234,15 +234,28 @@ bool Curve::sample(In guess, In normal, Sample& out) {
   return true;
 }
 
+// Cubic Hermite through both ends, moved back into the plane at fraction sigma normal to the chord, so that fractions mean what they say.
+void Curve::interpolate(const Sample& a, const Sample& b, double sigma, Vector& u) const {
+  const double h = length(b.u - a.u), s = sigma, s2 = s * s, s3 = s2 * s;
+  u = (2.0 * s3 - 3.0 * s2 + 1.0) * a.u + (s3 - 2.0 * s2 + s) * h * a.tangent + (3.0 * s2 - 2.0 * s3) * b.u + (s3 - s2) * h * b.tangent;
+  u += (sigma - dot(b.u - a.u, u - a.u) / (h * h)) * (b.u - a.u);
+}
+
 bool Curve::between(const Sample& a, const Sample& b, double sigma, Sample& out) {
-  // Cubic Hermite through both ends; the plane is normal to the chord.
-  const Vector chord = b.u - a.u;
-  const double h = length(chord), s = sigma, s2 = s * s, s3 = s2 * s;
-  const Vector guess =
-      (2.0 * s3 - 3.0 * s2 + 1.0) * a.u + (s3 - 2.0 * s2 + s) * h * a.tangent + (3.0 * s2 - 2.0 * s3) * b.u + (s3 - s2) * h * b.tangent;
-  // Back into the plane at fraction sigma, so that fractions mean what they say.
-  const double shift = sigma - dot(chord, guess - a.u) / (h * h);
-  return sample(guess + shift * chord, chord, out);
+  Vector guess;
+  interpolate(a, b, sigma, guess);
+  return sample(guess, b.u - a.u, out);
+}
+
+bool Curve::peek(const Sample& a, const Sample& b, double sigma, Sample& out) {
+  const double h = length(b.u - a.u), s = sigma;
+  interpolate(a, b, sigma, out.u);
+  out.tangent = (6.0 * s * (s - 1.0) / h) * (a.u - b.u) + (1.0 + s * (3.0 * s - 4.0)) * a.tangent + s * (3.0 * s - 2.0) * b.tangent;
+  out.tangent /= length(out.tangent);
+  f_.jacobian(out.u, jacobian_);
+  if (!classify(out.u, out.tangent, out.signature)) return false;
+  out.lead = lead_;
+  return true;
 }
 
 }  // namespace whirl::continuation

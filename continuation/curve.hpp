@@ -103,8 +103,12 @@ class Curve {
   bool sample(In guess, In normal, Sample& out);
   /// Point between two samples, at fraction sigma of the chord.
   bool between(const Sample& a, const Sample& b, double sigma, Sample& out);
+  /// The same of rest points without a correction: on the cubic through both ends, off the curve by the fourth power of their distance.
+  /// For looking about; what shows is to be corrected.
+  bool peek(const Sample& a, const Sample& b, double sigma, Sample& out);
 
  private:
+  void interpolate(const Sample& a, const Sample& b, double sigma, Vector& u) const;
   void border();
   void spread(const Vector& from, double scale, Out answer) const;
   double length_of(const Vector& from) const;

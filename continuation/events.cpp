@@ -152,11 +152,15 @@ void EventFinder::look_closer(const Sample& before, const Sample& a, const Sampl
   };
   bool near = suspicious(before.tangent[n], a.tangent[n], b.tangent[n]);
   for (std::size_t k = 0; k < leads(); ++k) near = near || suspicious(before.lead[k], a.lead[k], b.lead[k]);
-  Sample middle;
-  if (!near || depth >= options_.suspicion_depth || !curve_.between(a, b, 0.5, middle)) return;
+  if (!near || depth >= options_.suspicion_depth) return;
+  // Over a short stretch the cubic through its ends is the curve, near enough to see whether there is something to see.
+  const bool glance = curve_.problem().is_flow() && curve_.length(b.u - a.u) < 0.01;
+  Sample middle, left, right;
+  if (!(glance ? curve_.peek(a, b, 0.5, middle) : curve_.between(a, b, 0.5, middle))) return;
   if (changed(a.signature, middle.signature)) {
-    explain(a, middle, depth + 1);
-    explain(middle, b, depth + 1);
+    if (glance && !(curve_.sample(a.u, a.tangent, left) && curve_.sample(b.u, b.tangent, right) && curve_.between(left, right, 0.5, middle))) return;
+    explain(glance ? left : a, middle, depth + 1);
+    explain(middle, glance ? right : b, depth + 1);
   } else if (depth + 1 < options_.suspicion_depth) {
     look_closer(&before == &a ? b : before, a, middle, depth + 1);  // without a point before a the one behind tells how much things move
     look_closer(a, middle, b, depth + 1);
