@@ -152,9 +152,10 @@ void EventFinder::look_closer(const Sample& before, const Sample& a, const Sampl
   };
   bool near = suspicious(before.tangent[n], a.tangent[n], b.tangent[n]);
   for (std::size_t k = 0; k < leads(); ++k) near = near || suspicious(before.lead[k], a.lead[k], b.lead[k]);
-  if (!near || depth >= options_.suspicion_depth) return;
+  const double chord = curve_.length(b.u - a.u);
+  if (!near || depth >= options_.suspicion_depth || !(chord > 0.0)) return;  // no chord: the first step has no point before it
   // Over a short stretch the cubic through its ends is the curve, near enough to see whether there is something to see.
-  const bool glance = curve_.problem().is_flow() && curve_.length(b.u - a.u) < 0.01;
+  const bool glance = curve_.problem().is_flow() && chord < 0.01;
   Sample middle, left, right;
   if (!(glance ? curve_.peek(a, b, 0.5, middle) : curve_.between(a, b, 0.5, middle))) return;
   if (changed(a.signature, middle.signature)) {

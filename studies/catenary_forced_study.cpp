@@ -140,8 +140,13 @@ struct Row {
 
 Row row_of(const PeakFinder& peaks, const ForcedMotion& m) {
   const auto& f = m.in_plane;
-  return {peaks.largest(f, Quantity::T), peaks.largest(f, Quantity::U),     peaks.largest(f, Quantity::V),    peaks.largest(m.lateral, Quantity::W),
-          peaks.total_tension(f),        std::abs(f.at(f.coordinate.x1(), Quantity::T)), std::abs(f.at(f.coordinate.x2(), Quantity::T))};
+  return {peaks.largest(f, Quantity::T),
+          peaks.largest(f, Quantity::U),
+          peaks.largest(f, Quantity::V),
+          peaks.largest(m.lateral, Quantity::W),
+          peaks.total_tension(f),
+          std::abs(f.at(f.coordinate.x1(), Quantity::T)),
+          std::abs(f.at(f.coordinate.x2(), Quantity::T))};
 }
 
 double arc(const Setup& s, double x) { return s.cable.shape.a * (std::sinh(x) - std::sinh(s.cable.shape.x1)); }

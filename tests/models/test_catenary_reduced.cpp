@@ -54,7 +54,7 @@ TEST_CASE("catenary reduced: finite as the cable stiffens") {
     for (const Monomial& m : r.direct) top = std::max(top, std::abs(m.coefficient));
     return top;
   };
-  CHECK(most(stiff) > 90.0 * most(soft));  // projection alone: 1/kappa
+  CHECK(most(stiff) > 90.0 * most(soft));                                              // projection alone: 1/kappa
   for (const Monomial& m : stiff.energy) CHECK((m.powers[0] + m.powers[1]) % 2 == 0);  // left and right are alike
   CHECK_THROWS_AS(reduced_model(core(g), {}), std::invalid_argument);
   CHECK_THROWS_AS(reduced_model(core(g, 1e-3), {0, 0}), std::invalid_argument);

@@ -106,7 +106,7 @@ TEST_CASE("veering: crossings by both ways, least gap, hybrid modes") {
   CHECK(file.has("/fan/h0"));
 }
 
-TEST_CASE("catenary-modes: a nonlinear model that other kinds take; the asymptotic formula in the sweep") {
+TEST_CASE("catenary-modes: a nonlinear model that other kinds take, the asymptotic formula in the sweep") {
   const Folder f;
   const Ran r = program(f, "run " + study("catenary-modes") +
                                "--set cable.height_difference=20 --set cable.length=160 --set drag.normal=0.2 --set drag.lateral=0.2 "
