@@ -24,7 +24,7 @@ void embed(In v, const Indices& block, Vector& full) {
 }
 
 // Small A: directions b, c of unit length (a zero behind them) that A, nearly singular, almost annihilates from the left and from the right. Borders
-// with which [A b; c' 0] is well conditioned: two rounds of solving with the borders so far, else singular vectors.
+// with which [A b; c' 0] is well conditioned: three rounds of solving with the borders so far, else singular vectors.
 void null_directions(const Matrix& a, Vector& b, Vector& c) {
   const int m = static_cast<int>(a.rows());
   Matrix bordered(m + 1, m + 1);
@@ -104,6 +104,32 @@ void AugmentedSystem::gather_rows(MatrixIn j, int, MatrixOut out) const {
       for (std::size_t r = 0; r < state_.size(); ++r) out(static_cast<int>(r), column(c)) = j(state_[r], c);
 }
 
+void AugmentedSystem::prepare(In y) const {
+  spread(y);
+  base_.jacobian(u_, j_);
+  solve_bordered(y);
+}
+
+void AugmentedSystem::do_residual(In y, Out r) const {
+  spread(y);
+  base_.linearise(u_, r_, j_);
+  solve_bordered(y);
+  fill_residual(y, r);
+}
+
+void AugmentedSystem::do_jacobian(In y, MatrixOut j) const {
+  prepare(y);
+  fill_jacobian(y, j);
+}
+
+void AugmentedSystem::do_linearise(In y, Out r, MatrixOut j) const {
+  spread(y);
+  base_.linearise(u_, r_, j_);
+  solve_bordered(y);
+  fill_residual(y, r);
+  fill_jacobian(y, j);
+}
+
 // ----------------------------------------------------------------------------------------------------------- SingularSystem
 
 SingularSystem::SingularSystem(const Problem& base, Indices state, Indices block, In u)
@@ -139,7 +165,7 @@ void SingularSystem::update_borders(In y) {
   c_ = c.dot(c_) < 0.0 ? Vector(-c) : c;
 }
 
-void SingularSystem::solve_bordered() const {
+void SingularSystem::solve_bordered(In) const {
   const int m = static_cast<int>(block_.size());
   bordered_.topLeftCorner(m, m) = block_of(j_, block_);
   bordered_.col(m) = b_;
@@ -148,28 +174,6 @@ void SingularSystem::solve_bordered() const {
   v_ = w_ = Vector::Unit(m + 1, m);
   lu_.solve(v_, v_);
   lu_.solve_transposed(w_, w_);
-}
-
-void SingularSystem::do_residual(In y, Out r) const {
-  spread(y);
-  base_.linearise(u_, r_, j_);
-  solve_bordered();
-  fill_residual(y, r);
-}
-
-void SingularSystem::do_jacobian(In y, MatrixOut j) const {
-  spread(y);
-  base_.jacobian(u_, j_);
-  solve_bordered();
-  fill_jacobian(y, j);
-}
-
-void SingularSystem::do_linearise(In y, Out r, MatrixOut j) const {
-  spread(y);
-  base_.linearise(u_, r_, j_);
-  solve_bordered();
-  fill_residual(y, r);
-  fill_jacobian(y, j);
 }
 
 void SingularSystem::fill_residual(In, Out r) const {
@@ -191,17 +195,13 @@ void SingularSystem::fill_jacobian(In, MatrixOut j) const {
 }
 
 Vector SingularSystem::null_vector(In y) const {
-  spread(y);
-  base_.jacobian(u_, j_);
-  solve_bordered();
+  prepare(y);
   embed(v_.head(static_cast<int>(block_.size())), block_, full_);
   return full_.head(base_.size()).normalized();
 }
 
 Vector SingularSystem::left_null_vector(In y) const {
-  spread(y);
-  base_.jacobian(u_, j_);
-  solve_bordered();
+  prepare(y);
   embed(w_.head(static_cast<int>(block_.size())), block_, full_);
   return full_.head(base_.size()).normalized();
 }
@@ -232,7 +232,7 @@ void BranchPointSystem::update_borders(In y) {
   c_ = svd.matrixV().rightCols(2);
 }
 
-void BranchPointSystem::solve_bordered() const {
+void BranchPointSystem::solve_bordered(In) const {
   const int n = base_.size();
   bordered_.setZero();
   bordered_.topLeftCorner(n, n + 1) = j_.leftCols(n + 1);
@@ -245,28 +245,6 @@ void BranchPointSystem::solve_bordered() const {
   for (int i = 0; i < 2; ++i) lu_.solve(e.col(i), v_.col(i));
   w_ = Vector::Unit(n + 2, n + 1);
   lu_.solve_transposed(w_, w_);
-}
-
-void BranchPointSystem::do_residual(In y, Out r) const {
-  spread(y);
-  base_.linearise(u_, r_, j_);
-  solve_bordered();
-  fill_residual(y, r);
-}
-
-void BranchPointSystem::do_jacobian(In y, MatrixOut j) const {
-  spread(y);
-  base_.jacobian(u_, j_);
-  solve_bordered();
-  fill_jacobian(y, j);
-}
-
-void BranchPointSystem::do_linearise(In y, Out r, MatrixOut j) const {
-  spread(y);
-  base_.linearise(u_, r_, j_);
-  solve_bordered();
-  fill_residual(y, r);
-  fill_jacobian(y, j);
 }
 
 void BranchPointSystem::fill_residual(In y, Out r) const {
@@ -297,9 +275,7 @@ Matrix BranchPointSystem::null_space(In y) const {
 }
 
 Vector BranchPointSystem::left_null_vector(In y) const {
-  spread(y);
-  base_.jacobian(u_, j_);
-  solve_bordered();
+  prepare(y);
   return w_.head(base_.size()).normalized();
 }
 
@@ -352,10 +328,12 @@ void HopfSystem::update_borders(In y) {
   choose_entries();
 }
 
-// Planes that A^2 + kappa I, nearly of rank m - 2, almost annihilates from the left and from the right: two rounds of solving with the borders so
-// far.
+// Planes that A^2 + kappa I, nearly of rank m - 2, almost annihilates from the left and from the right: three rounds of solving with the borders so
+// far, which are as large as the matrix. j_ is at hand.
 bool HopfSystem::null_planes(double kappa) {
   const int m = static_cast<int>(block_.size());
+  const Matrix a = block_of(j_, block_);
+  const double size = (a * a).norm() + std::abs(kappa);
   left_.resize(m, 2);
   right_.resize(m, 2);
   for (int i = 0; i < m; ++i)  // no symmetry of a model is likely to be orthogonal to these
@@ -371,10 +349,12 @@ bool HopfSystem::null_planes(double kappa) {
   };
   for (int round = 0; round < 3; ++round) {
     if (!orthonormal(left_) || !orthonormal(right_)) return false;
+    left_ *= size;
+    right_ *= size;
     solve_bordered(kappa);
-    if (!(x_.topRows(m).norm() < 1e8) || !(y_.topRows(m).norm() < 1e8)) return false;
     right_ = x_.topRows(m);
     left_ = y_.topRows(m);
+    if (!(right_.norm() * size < 1e8) || !(left_.norm() * size < 1e8)) return false;
   }
   return orthonormal(left_) && orthonormal(right_);
 }
@@ -416,28 +396,6 @@ void HopfSystem::solve_bordered(double kappa) const {
   lu_.solve_two(x_.col(0), x_.col(1), x_.col(0), x_.col(1));
   for (int i = 0; i < 2; ++i) lu_.solve_transposed(y_.col(i), y_.col(i));
   g_ = x_.bottomRows(2);
-}
-
-void HopfSystem::do_residual(In y, Out r) const {
-  spread(y);
-  base_.linearise(u_, r_, j_);
-  solve_bordered(kappa(y));
-  fill_residual(y, r);
-}
-
-void HopfSystem::do_jacobian(In y, MatrixOut j) const {
-  spread(y);
-  base_.jacobian(u_, j_);
-  solve_bordered(kappa(y));
-  fill_jacobian(y, j);
-}
-
-void HopfSystem::do_linearise(In y, Out r, MatrixOut j) const {
-  spread(y);
-  base_.linearise(u_, r_, j_);
-  solve_bordered(kappa(y));
-  fill_residual(y, r);
-  fill_jacobian(y, j);
 }
 
 void HopfSystem::fill_residual(In, Out r) const {
@@ -516,7 +474,7 @@ void PeakSystem::update_borders(In y) {
   c_ = tangent.dot(c_) < 0.0 ? Vector(-tangent) : tangent;
 }
 
-void PeakSystem::solve_bordered() const {
+void PeakSystem::solve_bordered(In) const {
   const int s = static_cast<int>(state_.size());
   const Vector slope = form_.gradient(u_.head(base_.size()));
   gradient_.setZero();
@@ -530,28 +488,6 @@ void PeakSystem::solve_bordered() const {
   v_ = Vector::Unit(s + 1, s);
   lu_.solve(v_, v_);
   lu_.solve_transposed(gradient_, w_);
-}
-
-void PeakSystem::do_residual(In y, Out r) const {
-  spread(y);
-  base_.linearise(u_, r_, j_);
-  solve_bordered();
-  fill_residual(y, r);
-}
-
-void PeakSystem::do_jacobian(In y, MatrixOut j) const {
-  spread(y);
-  base_.jacobian(u_, j_);
-  solve_bordered();
-  fill_jacobian(y, j);
-}
-
-void PeakSystem::do_linearise(In y, Out r, MatrixOut j) const {
-  spread(y);
-  base_.linearise(u_, r_, j_);
-  solve_bordered();
-  fill_residual(y, r);
-  fill_jacobian(y, j);
 }
 
 void PeakSystem::fill_residual(In, Out r) const {

@@ -31,7 +31,7 @@
 
 namespace whirl::continuation {
 
-/// Shared by the three: where the base's unknowns stand in the system's.
+/// Shared by all: where the base's unknowns stand in the system's, and the order of work. Everything at one y is evaluated once.
 class AugmentedSystem : public Problem {
  public:
   /// The base's u = (x, p) behind the system's unknowns.
@@ -46,6 +46,11 @@ class AugmentedSystem : public Problem {
   AugmentedSystem(const Problem& base, Indices state, int extra);
   void spread(In y) const;                                       // y -> u_
   void gather_rows(MatrixIn j, int extra, MatrixOut out) const;  // [J_SS | J_Sp] into the system's columns
+  /// Solves the bordered system at y, whose base point and Jacobian stand in u_ and j_.
+  virtual void solve_bordered(In y) const = 0;
+  virtual void fill_residual(In y, Out r) const = 0;  ///< from u_, r_ and the bordered solutions
+  virtual void fill_jacobian(In y, MatrixOut j) const = 0;
+  void prepare(In y) const;  // u_, j_ and the bordered solutions at y
   int column(int base_column) const { return column_[static_cast<std::size_t>(base_column)]; }
 
   const Problem& base_;
@@ -54,6 +59,11 @@ class AugmentedSystem : public Problem {
   std::vector<int> column_;  // base column -> system column, -1 outside S
   mutable Vector u_, r_;
   mutable Matrix j_, h_;
+
+ private:
+  void do_residual(In y, Out r) const override;
+  void do_jacobian(In y, MatrixOut j) const override;
+  void do_linearise(In y, Out r, MatrixOut j) const override;
 };
 
 class SingularSystem : public AugmentedSystem {
@@ -65,12 +75,9 @@ class SingularSystem : public AugmentedSystem {
   Vector left_null_vector(In y) const;  ///< w, size n, unit length
 
  private:
-  void do_residual(In y, Out r) const override;
-  void do_jacobian(In y, MatrixOut j) const override;
-  void do_linearise(In y, Out r, MatrixOut j) const override;
-  void fill_residual(In y, Out r) const;
-  void fill_jacobian(In y, MatrixOut j) const;
-  void solve_bordered() const;
+  void fill_residual(In y, Out r) const override;
+  void fill_jacobian(In y, MatrixOut j) const override;
+  void solve_bordered(In y) const override;
   Indices block_;  // M
   Vector b_, c_;
   mutable Matrix bordered_;
@@ -87,12 +94,9 @@ class BranchPointSystem : public AugmentedSystem {
   Vector left_null_vector(In y) const;  ///< size n, unit length
 
  private:
-  void do_residual(In y, Out r) const override;
-  void do_jacobian(In y, MatrixOut j) const override;
-  void do_linearise(In y, Out r, MatrixOut j) const override;
-  void fill_residual(In y, Out r) const;
-  void fill_jacobian(In y, MatrixOut j) const;
-  void solve_bordered() const;
+  void fill_residual(In y, Out r) const override;
+  void fill_jacobian(In y, MatrixOut j) const override;
+  void solve_bordered(In y) const override;
   Vector b_;
   Matrix c_;
   mutable Matrix bordered_, v_;
@@ -109,11 +113,9 @@ class HopfSystem : public AugmentedSystem {
   double kappa(In y) const { return y[static_cast<int>(state_.size()) + 1]; }
 
  private:
-  void do_residual(In y, Out r) const override;
-  void do_jacobian(In y, MatrixOut j) const override;
-  void do_linearise(In y, Out r, MatrixOut j) const override;
-  void fill_residual(In y, Out r) const;
-  void fill_jacobian(In y, MatrixOut j) const;
+  void fill_residual(In y, Out r) const override;
+  void fill_jacobian(In y, MatrixOut j) const override;
+  void solve_bordered(In y) const override { solve_bordered(kappa(y)); }
   void solve_bordered(double kappa) const;
   bool null_planes(double kappa);
   void choose_entries();
@@ -144,12 +146,9 @@ class PeakSystem : public AugmentedSystem {
   void update_borders(In y) override;
 
  private:
-  void do_residual(In y, Out r) const override;
-  void do_jacobian(In y, MatrixOut j) const override;
-  void do_linearise(In y, Out r, MatrixOut j) const override;
-  void fill_residual(In y, Out r) const;
-  void fill_jacobian(In y, MatrixOut j) const;
-  void solve_bordered() const;
+  void fill_residual(In y, Out r) const override;
+  void fill_jacobian(In y, MatrixOut j) const override;
+  void solve_bordered(In y) const override;
   QuadraticForm form_;
   Vector c_;
   mutable Matrix bordered_;

@@ -121,7 +121,7 @@ bool Curve::settle(Out u, In anchor, double previous, double last_step, Report& 
   right_side(u, anchor);
   lu_.solve_two(rhs_, last_, solution_, tangent_);
   // Where the step before was tiny, what this one adds is rounding and says nothing of the contraction: that is at most most_curved times it.
-  constexpr double most_curved = 1e3, tiny = 1e-6;
+  constexpr double most_curved = 1e3, tiny = 1e-7;
   const double size = length_of(solution_), rate = size > 0.0 ? std::min(size / previous, most_curved * previous) : 0.0;
   if (report.iterations == 1) report.contraction = rate;
   const bool rounding = previous < tiny && size > 0.1 * previous && size < tiny;
@@ -129,10 +129,9 @@ bool Curve::settle(Out u, In anchor, double previous, double last_step, Report& 
   spread(solution_, 1.0, step_);
   u += step_;
   ++report.iterations;
-  subtract_product(solution_, rhs_);
-  report.residual = 0.0;
-  for (int i = 0; i < state_; ++i) report.residual = std::max(report.residual, std::abs(rhs_[i]));
-  report.ok = true;
+  f_.residual(u, r_);
+  report.residual = r_.lpNorm<Eigen::Infinity>();
+  report.ok = std::isfinite(report.residual);
   return true;
 }
 

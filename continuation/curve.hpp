@@ -6,7 +6,8 @@
 ///
 /// Where symmetries split the Jacobian into blocks only block 0 is solved: r, steps and tangents are zero in the others.
 ///
-/// A point costs two linearisations and one LU: Newton from the predicted point, a chord step with the same factors, the tangent by refinement
+/// A point costs two linearisations, one LU and the residual to show: Newton from the predicted point, a chord step with the same factors, the
+/// tangent by refinement
 ///
 ///     t <- t + LU^-1 (e - B t),   B the bordered matrix at the point, LU of the one a correction earlier.
 ///
@@ -59,7 +60,7 @@ class Curve {
     int iterations = 0;
     double first_step = 0.0;   ///< length of the first correction
     double contraction = 0.0;  ///< second over first
-    double residual = 0.0;     ///< largest |r_i|, of the last step to first order: the second, < last_step^2, is below rounding
+    double residual = 0.0;     ///< largest |r_i| at the point
   };
 
   Curve(const Problem& f, Blocks blocks, const CurveOptions& options);

@@ -40,32 +40,25 @@ Vector TorusSystem::unknowns(In u) const {
   return y;
 }
 
-void TorusSystem::form(In y) const {
-  spread(y);
-  base_.linearise(u_, r_, j_);
-  orbit_.velocity(u_, velocity_);
-  const int m = static_cast<int>(block_.size());
-  const double k = kappa(y);
-  for (int c = 0; c < m; ++c) {
-    for (int r = 0; r < m; ++r) {
-      const int row = block_[std::size_t(r)], col = block_[std::size_t(c)];
-      bordered_(r, c) = Complex(j_(row, col), k * velocity_(row, col));
-    }
-    bordered_(c, c) -= k * k;
-  }
-}
-
 // The bordered solutions themselves, made unit length, are better borders: they tend to the null vectors.
 void TorusSystem::update_borders(In y) {
-  form(y);
-  solve_bordered();
+  prepare(y);
   const auto m = static_cast<Eigen::Index>(block_.size());
   c_ = v_.head(m).normalized();
   b_ = w_.head(m).normalized();
 }
 
-void TorusSystem::solve_bordered() const {
+void TorusSystem::solve_bordered(In y) const {
+  orbit_.velocity(u_, velocity_);
   const auto m = static_cast<Eigen::Index>(block_.size());
+  const double k = kappa(y);
+  for (Eigen::Index c = 0; c < m; ++c) {  // L
+    for (Eigen::Index r = 0; r < m; ++r) {
+      const int row = block_[std::size_t(r)], col = block_[std::size_t(c)];
+      bordered_(r, c) = Complex(j_(row, col), k * velocity_(row, col));
+    }
+    bordered_(c, c) -= k * k;
+  }
   bordered_.col(m).head(m) = b_;
   bordered_.row(m).head(m) = c_.adjoint();
   bordered_(m, m) = 0.0;
@@ -75,9 +68,7 @@ void TorusSystem::solve_bordered() const {
   w_ = lu_.adjoint().solve(e);
 }
 
-void TorusSystem::do_residual(In y, Out r) const {
-  form(y);
-  solve_bordered();
+void TorusSystem::fill_residual(In, Out r) const {
   const auto s = static_cast<int>(state_.size());
   for (int i = 0; i < s; ++i) r[i] = r_[state_[std::size_t(i)]];
   const Complex g = v_[static_cast<Eigen::Index>(block_.size())];
@@ -85,9 +76,7 @@ void TorusSystem::do_residual(In y, Out r) const {
   r[s + 1] = g.imag();
 }
 
-void TorusSystem::do_jacobian(In y, MatrixOut j) const {
-  form(y);
-  solve_bordered();
+void TorusSystem::fill_jacobian(In y, MatrixOut j) const {
   const auto s = static_cast<int>(state_.size());
   const auto m = static_cast<Eigen::Index>(block_.size());
   const double k = kappa(y);
@@ -125,8 +114,7 @@ void TorusSystem::do_jacobian(In y, MatrixOut j) const {
 }
 
 Eigen::VectorXcd TorusSystem::null_vector(In y) const {
-  form(y);
-  solve_bordered();
+  prepare(y);
   Eigen::VectorXcd full = Eigen::VectorXcd::Zero(base_.size());
   for (std::size_t i = 0; i < block_.size(); ++i) full[block_[i]] = v_[static_cast<Eigen::Index>(i)];
   return full.normalized();

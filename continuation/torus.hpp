@@ -27,10 +27,9 @@ class TorusSystem : public AugmentedSystem {
   Eigen::VectorXcd null_vector(In y) const;  ///< v on all unknowns of the motion, unit length
 
  private:
-  void do_residual(In y, Out r) const override;
-  void do_jacobian(In y, MatrixOut j) const override;
-  void form(In y) const;  // L at y into bordered_
-  void solve_bordered() const;
+  void solve_bordered(In y) const override;
+  void fill_residual(In y, Out r) const override;
+  void fill_jacobian(In y, MatrixOut j) const override;
 
   const OrbitProblem& orbit_;
   Indices block_;

@@ -111,30 +111,31 @@ void SuperharmonicFlow::second_along(In u, In v, MatrixOut h) const {
     for (int row = 0; row < 4; ++row) h(row, c) = j[row + 4 * c].d[0];
 }
 
-void SuperharmonicFlow::do_linearise(In u, Out r, MatrixOut j) const {
-  switch (parameters()) {
+namespace {
+
+// Calls f with the number of lenses as a constant.
+template <class F>
+void with_lenses(int count, F&& f) {
+  switch (count) {
     case 0:
-      return field_and_jacobian<0>(u, r.data(), j);
+      return f(std::integral_constant<int, 0>());
     case 1:
-      return field_and_jacobian<1>(u, r.data(), j);
+      return f(std::integral_constant<int, 1>());
     case 2:
-      return field_and_jacobian<2>(u, r.data(), j);
+      return f(std::integral_constant<int, 2>());
     default:
       throw std::logic_error("at most two lenses");
   }
 }
 
+}  // namespace
+
+void SuperharmonicFlow::do_linearise(In u, Out r, MatrixOut j) const {
+  with_lenses(parameters(), [&](auto K) { field_and_jacobian<K()>(u, r.data(), j); });
+}
+
 void SuperharmonicFlow::do_second(In u, In v, MatrixOut h) const {
-  switch (parameters()) {
-    case 0:
-      return second_along<0>(u, v, h);
-    case 1:
-      return second_along<1>(u, v, h);
-    case 2:
-      return second_along<2>(u, v, h);
-    default:
-      throw std::logic_error("at most two lenses");
-  }
+  with_lenses(parameters(), [&](auto K) { second_along<K()>(u, v, h); });
 }
 
 void SuperharmonicFlow::do_jacobian(In u, MatrixOut j) const {
