@@ -167,7 +167,8 @@ void SingularSystem::update_borders(In y) {
 
 void SingularSystem::solve_bordered(In) const {
   const int m = static_cast<int>(block_.size());
-  bordered_.topLeftCorner(m, m) = block_of(j_, block_);
+  for (int c = 0; c < m; ++c)
+    for (int r = 0; r < m; ++r) bordered_(r, c) = j_(block_[std::size_t(r)], block_[std::size_t(c)]);
   bordered_.col(m) = b_;
   bordered_.row(m) = c_.transpose();
   lu_.compute(bordered_);
@@ -361,7 +362,7 @@ bool HopfSystem::null_planes(double kappa) {
 
 // Of the four entries of G, two whose gradients are the least parallel: the longest, and the longest of what is left across it.
 void HopfSystem::choose_entries() {
-  gradients();
+  gradients(true, true);
   int first = 0;
   for (int i = 1; i < 4; ++i)
     if (four_.row(i).squaredNorm() > four_.row(first).squaredNorm()) first = i;
@@ -371,8 +372,9 @@ void HopfSystem::choose_entries() {
   for (int i = 0; i < 4; ++i) {
     if (i == first) continue;
     const double along = four_.row(i).dot(four_.row(first)), across = four_.row(i).squaredNorm() - along * along / size;
-    if (across > longest) {
-      longest = across;
+    const double weight = i / 2 == first / 2 ? 4.0 : 1.0;  // the other entry of the same column costs half
+    if (weight * across > longest) {
+      longest = weight * across;
       second = i;
     }
   }
@@ -405,7 +407,7 @@ void HopfSystem::fill_residual(In, Out r) const {
 }
 
 void HopfSystem::fill_jacobian(In, MatrixOut j) const {
-  gradients();
+  gradients(entry_[0] < 2 || entry_[1] < 2, entry_[0] >= 2 || entry_[1] >= 2);
   j.setZero();
   gather_rows(j_, 1, j);
   const int s = static_cast<int>(state_.size());
@@ -413,10 +415,10 @@ void HopfSystem::fill_jacobian(In, MatrixOut j) const {
 }
 
 // dG_ij = -Y_i' (dA A + A dA + dkappa) X_j
-void HopfSystem::gradients() const {
+void HopfSystem::gradients(bool first, bool second) const {
   const int m = static_cast<int>(block_.size()), s = static_cast<int>(state_.size());
   four_.setZero();
-  for (int jx = 0; jx < 2; ++jx)
+  for (int jx = first ? 0 : 1; jx < (second ? 2 : 1); ++jx)
     for (int pass = 0; pass < 2; ++pass) {  // dA (A X_j) against Y_i, dA X_j against A'Y_i
       full_.setZero();
       for (int i = 0; i < m; ++i) full_[block_[std::size_t(i)]] = pass == 0 ? a_.row(i).dot(x_.col(jx).head(m)) : x_(i, jx);

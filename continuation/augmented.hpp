@@ -90,8 +90,9 @@ class BranchPointSystem : public AugmentedSystem {
   BranchPointSystem(const Problem& base, In u);
   Vector unknowns(In u) const override;
   void update_borders(In y) override;
-  Matrix null_space(In y) const;        ///< two columns spanning ker [r_x r_p1], size n + 1
-  Vector left_null_vector(In y) const;  ///< size n, unit length
+  bool persists(In y) const { return std::abs(y[base_.size() + 1]) < 1e-8; }  ///< beta is zero: two curves cross and do not just come near
+  Matrix null_space(In y) const;                                              ///< two columns spanning ker [r_x r_p1], size n + 1
+  Vector left_null_vector(In y) const;                                        ///< size n, unit length
 
  private:
   void fill_residual(In y, Out r) const override;
@@ -119,7 +120,7 @@ class HopfSystem : public AugmentedSystem {
   void solve_bordered(double kappa) const;
   bool null_planes(double kappa);
   void choose_entries();
-  void gradients() const;  // into four_, rows dG00, dG10, dG01, dG11
+  void gradients(bool first, bool second) const;  // into four_, rows dG00, dG10, dG01, dG11; of each column of G only where asked
   Indices block_;
   Matrix left_, right_;  // W, V
   double kappa0_ = 0.0;

@@ -68,10 +68,11 @@ void RealFactors::restart(const std::complex<double>* z, int m) {
 }
 
 bool RealFactors::three(const Matrix& a, std::complex<double>* z) {
-  const double m00 = a(1, 1) * a(2, 2) - a(1, 2) * a(2, 1), m01 = a(1, 0) * a(2, 2) - a(1, 2) * a(2, 0), m02 = a(1, 0) * a(2, 1) - a(1, 1) * a(2, 0);
-  const double c2 = -(a(0, 0) + a(1, 1) + a(2, 2));
-  const double c1 = m00 + a(0, 0) * a(2, 2) - a(0, 2) * a(2, 0) + a(0, 0) * a(1, 1) - a(0, 1) * a(1, 0);
-  const double c0 = -(a(0, 0) * m00 - a(0, 1) * m01 + a(0, 2) * m02), size = a.norm();
+  const double* d = a.data();  // columns of 3
+  const double m00 = d[4] * d[8] - d[7] * d[5], m01 = d[1] * d[8] - d[7] * d[2], m02 = d[1] * d[5] - d[4] * d[2];
+  const double c2 = -(d[0] + d[4] + d[8]);
+  const double c1 = m00 + d[0] * d[8] - d[6] * d[2] + d[0] * d[4] - d[3] * d[1];
+  const double c0 = -(d[0] * m00 - d[3] * m01 + d[6] * m02), size = a.norm();
   double previous = 1e-3;
   for (int i = 0; i < most_steps; ++i) {
     const double p = c2 + t_, q = c1 + t_ * p, f = c0 + t_ * q, slope = q + t_ * (p + t_);
@@ -88,16 +89,16 @@ bool RealFactors::three(const Matrix& a, std::complex<double>* z) {
 }
 
 bool RealFactors::four(const Matrix& a, std::complex<double>* z) {
+  const double* d = a.data();  // columns of 4
   // Minors of the first two rows and of the last two.
-  const double s0 = a(0, 0) * a(1, 1) - a(1, 0) * a(0, 1), s1 = a(0, 0) * a(1, 2) - a(1, 0) * a(0, 2), s2 = a(0, 0) * a(1, 3) - a(1, 0) * a(0, 3),
-               s3 = a(0, 1) * a(1, 2) - a(1, 1) * a(0, 2), s4 = a(0, 1) * a(1, 3) - a(1, 1) * a(0, 3), s5 = a(0, 2) * a(1, 3) - a(1, 2) * a(0, 3);
-  const double k5 = a(2, 2) * a(3, 3) - a(3, 2) * a(2, 3), k4 = a(2, 1) * a(3, 3) - a(3, 1) * a(2, 3), k3 = a(2, 1) * a(3, 2) - a(3, 1) * a(2, 2),
-               k2 = a(2, 0) * a(3, 3) - a(3, 0) * a(2, 3), k1 = a(2, 0) * a(3, 2) - a(3, 0) * a(2, 2), k0 = a(2, 0) * a(3, 1) - a(3, 0) * a(2, 1);
-  const double c3 = -(a(0, 0) + a(1, 1) + a(2, 2) + a(3, 3));
-  const double c2 =
-      s0 + k5 + (a(0, 0) + a(1, 1)) * (a(2, 2) + a(3, 3)) - a(0, 2) * a(2, 0) - a(0, 3) * a(3, 0) - a(1, 2) * a(2, 1) - a(1, 3) * a(3, 1);
-  const double c1 = -(a(1, 1) * k5 - a(1, 2) * k4 + a(1, 3) * k3 + a(0, 0) * k5 - a(0, 2) * k2 + a(0, 3) * k1 + a(3, 0) * s4 - a(3, 1) * s2 +
-                      a(3, 3) * s0 + a(2, 0) * s3 - a(2, 1) * s1 + a(2, 2) * s0);
+  const double s0 = d[0] * d[5] - d[1] * d[4], s1 = d[0] * d[9] - d[1] * d[8], s2 = d[0] * d[13] - d[1] * d[12], s3 = d[4] * d[9] - d[5] * d[8],
+               s4 = d[4] * d[13] - d[5] * d[12], s5 = d[8] * d[13] - d[9] * d[12];
+  const double k5 = d[10] * d[15] - d[11] * d[14], k4 = d[6] * d[15] - d[7] * d[14], k3 = d[6] * d[11] - d[7] * d[10],
+               k2 = d[2] * d[15] - d[3] * d[14], k1 = d[2] * d[11] - d[3] * d[10], k0 = d[2] * d[7] - d[3] * d[6];
+  const double c3 = -(d[0] + d[5] + d[10] + d[15]);
+  const double c2 = s0 + k5 + (d[0] + d[5]) * (d[10] + d[15]) - d[8] * d[2] - d[12] * d[3] - d[9] * d[6] - d[13] * d[7];
+  const double c1 = -(d[5] * k5 - d[9] * k4 + d[13] * k3 + d[0] * k5 - d[8] * k2 + d[12] * k1 + d[3] * s4 - d[7] * s2 + d[15] * s0 + d[2] * s3 -
+                      d[6] * s1 + d[10] * s0);
   const double c0 = s0 * k5 - s1 * k4 + s2 * k3 + s3 * k2 - s4 * k1 + s5 * k0, size = a.norm();
   const double inverse_size = 1.0 / size, p_here = p_, q_here = q_;
   p_ += p_here - p_before_;

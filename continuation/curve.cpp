@@ -7,14 +7,12 @@ Curve::Curve(const Problem& f, Blocks blocks, const CurveOptions& options)
       blocks_(std::move(blocks)),
       options_(options),
       spectrum_(blocks_),
-      eigenvalues_(Eigen::VectorXcd::Zero(spectrum_size(f))),
+      eigenvalues_(Eigen::VectorXcd::Zero(orbit_ ? spectrum_size(f) : 0)),
       group_(Eigen::VectorXi::Zero(spectrum_size(f))),
-      leads_(orbit_ ? 1 : static_cast<int>(blocks_.indices.size())),
+      parts_(orbit_ ? 1 : static_cast<int>(blocks_.indices.size())),
       weight_(Vector::Ones(f.size() + 1)),
       r_(f.size()),
-      step_(Vector::Zero(f.size() + 1)),
       normal_(Vector::Zero(f.size() + 1)),
-      jacobian_(f.size(), f.size() + 1),
       whole_(blocks_.indices.size() == 1),
       state_(static_cast<int>(blocks_.indices[0].size())),
       solution_(state_ + 1),
@@ -23,6 +21,8 @@ Curve::Curve(const Problem& f, Blocks blocks, const CurveOptions& options)
       last_(Vector::Unit(state_ + 1, state_)),
       tangent_(state_ + 1),
       bordered_(state_ + 1, state_ + 1),
+      own_jacobian_(whole_ ? 0 : f.size(), f.size() + 1),
+      jacobian_(whole_ ? bordered_.topRows(f.size()) : own_jacobian_.topRows(f.size())),
       lu_(state_ + 1) {
   if (f.parameters() != 1) throw std::invalid_argument("a curve needs exactly one free parameter");
   if (blocks_.indices.size() > Signature::max_blocks) throw std::invalid_argument("more than 8 symmetry blocks");
@@ -49,8 +49,7 @@ void Curve::set_scales(double x_scale, double p_scale) {
 void Curve::border() {
   const int n = f_.size();
   if (whole_) {
-    bordered_.topRows(n) = jacobian_;
-    bordered_.row(n) = normal_.transpose();
+    for (int c = 0; c <= n; ++c) bordered_(n, c) = normal_[c];
     return;
   }
   const Indices& even = blocks_.indices[0];
@@ -75,6 +74,13 @@ void Curve::spread(const Vector& from, double scale, Out answer) const {
   to[f_.size()] = scale * from[state_];
 }
 
+// u <- u + an answer of the bordered system.
+void Curve::add(const Vector& answer, Out u) const {
+  double* to = u.data();
+  for (int i = 0; i < state_; ++i) to[whole_ ? i : blocks_.indices[0][static_cast<std::size_t>(i)]] += answer[i];
+  to[f_.size()] += answer[state_];
+}
+
 // Of an answer of the bordered system.
 double Curve::length_of(const Vector& from) const {
   double sum = 0.0;
@@ -83,7 +89,7 @@ double Curve::length_of(const Vector& from) const {
 }
 
 // Of the bordered system for the correction at u.
-void Curve::right_side(In u, In anchor) {
+void Curve::right_side(Out u, In anchor) {
   for (int i = 0; i < state_; ++i) rhs_[i] = -r_[whole_ ? i : blocks_.indices[0][static_cast<std::size_t>(i)]];
   double off = 0.0;
   for (int i = 0; i < u.size(); ++i) off += (u[i] - anchor[i]) * normal_[i];
@@ -109,8 +115,7 @@ Curve::Report Curve::correct(Out u, In normal, In anchor, bool strict) {
     if (!std::isfinite(size)) return report;
     if (report.iterations == 0) report.first_step = size;
     if (report.iterations > 0 && size > 2.0 * previous && size > 1e3 * options_.tolerance) return report;
-    spread(solution_, 1.0, step_);
-    u += step_;
+    add(solution_, u);
     ++report.iterations;
     previous = size;
   }
@@ -121,13 +126,12 @@ bool Curve::settle(Out u, In anchor, double previous, double last_step, Report& 
   right_side(u, anchor);
   lu_.solve_two(rhs_, last_, solution_, tangent_);
   // Where the step before was tiny, what this one adds is rounding and says nothing of the contraction: that is at most most_curved times it.
-  constexpr double most_curved = 1e3, tiny = 1e-7;
+  constexpr double most_curved = 1e3, tiny = 1e-9;
   const double size = length_of(solution_), rate = size > 0.0 ? std::min(size / previous, most_curved * previous) : 0.0;
   if (report.iterations == 1) report.contraction = rate;
   const bool rounding = previous < tiny && size > 0.1 * previous && size < tiny;
   if (!(size == 0.0 || rounding || (size <= last_step && size * rate < options_.tolerance))) return false;
-  spread(solution_, 1.0, step_);
-  u += step_;
+  add(solution_, u);
   ++report.iterations;
   f_.residual(u, r_);
   report.residual = r_.lpNorm<Eigen::Infinity>();
@@ -179,11 +183,10 @@ bool Curve::classify(In u, In tangent, Signature& signature) {
     return !orbit_ || count_multipliers(u, signature);
   }
   if (!spectrum_.compute(jacobian_)) return false;
-  eigenvalues_ = spectrum_.eigenvalues();
   for (int k = 0; k < static_cast<int>(blocks_.indices.size()); ++k) {
     const auto slot = static_cast<std::size_t>(k);
-    lead_[slot] = spectrum_.lead(k);
-    signature.unstable[slot] = spectrum_.unstable(k);
+    rates_[slot] = spectrum_.rates(k);
+    signature.unstable[slot] = rates_[slot].positive();
     signature.negative[slot] = (blocks_.indices[slot].size() - static_cast<std::size_t>(signature.unstable[slot])) % 2 == 1;
   }
   return true;
@@ -206,13 +209,13 @@ bool Curve::count_multipliers(In u, Signature& signature) {
   signature.unstable.fill(0);
   signature.above.fill(0);
   signature.flips.fill(0);
-  lead_.fill(std::numeric_limits<double>::infinity());
+  for (auto& r : rates_) r.clear();
   for (Eigen::Index i = 0; i < eigenvalues_.size(); ++i) {
     const std::complex<double> mu = eigenvalues_[i];
     const auto slot = static_cast<std::size_t>(group_[i]);
     const double excess = std::abs(mu) - 1.0;
-    leads_ = std::max(leads_, group_[i] + 1);
-    if (std::abs(excess) < std::abs(lead_[slot])) lead_[slot] = excess;
+    parts_ = std::max(parts_, group_[i] + 1);
+    rates_[slot].add(excess);
     if (!(excess > 0.0)) continue;
     ++signature.unstable[slot];
     if (mu.imag() == 0.0) ++(mu.real() > 0.0 ? signature.above : signature.flips)[slot];
@@ -227,10 +230,14 @@ bool Curve::sample(In guess, In normal, Sample& out) {
   if (!report.ok || !complete(out.u, out.tangent, out.signature)) return false;
   out.residual = report.residual;
   out.iterations = report.iterations;
-  out.lead = lead_;
-  if (f_.is_flow())
-    for (int k = 0; k < leads_; ++k) out.kappa[static_cast<std::size_t>(k)] = spectrum_.kappa(k);
+  copy_spectrum(out);
   return true;
+}
+
+void Curve::copy_spectrum(Sample& to) const {
+  copy_rates(to);
+  if (f_.is_flow())
+    for (int k = 0; k < parts_; ++k) to.kappa[static_cast<std::size_t>(k)] = spectrum_.kappa(k);
 }
 
 // Cubic Hermite through both ends, moved back into the plane at fraction sigma normal to the chord, so that fractions mean what they say.
@@ -246,14 +253,18 @@ bool Curve::between(const Sample& a, const Sample& b, double sigma, Sample& out)
   return sample(guess, b.u - a.u, out);
 }
 
-bool Curve::peek(const Sample& a, const Sample& b, double sigma, Sample& out) {
+void Curve::guess(const Sample& a, const Sample& b, double sigma, Sample& out) const {
   const double h = length(b.u - a.u), s = sigma;
   interpolate(a, b, sigma, out.u);
   out.tangent = (6.0 * s * (s - 1.0) / h) * (a.u - b.u) + (1.0 + s * (3.0 * s - 4.0)) * a.tangent + s * (3.0 * s - 2.0) * b.tangent;
   out.tangent /= length(out.tangent);
+}
+
+bool Curve::peek(const Sample& a, const Sample& b, double sigma, Sample& out) {
+  guess(a, b, sigma, out);
   f_.jacobian(out.u, jacobian_);
   if (!classify(out.u, out.tangent, out.signature)) return false;
-  out.lead = lead_;
+  copy_spectrum(out);
   return true;
 }
 

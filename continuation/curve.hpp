@@ -13,6 +13,7 @@
 ///
 /// W is diagonal: lengths are measured in units of the parameter range and of the size of x, so that steps need no tuning.
 
+#include <algorithm>
 #include <array>
 
 #include "continuation/spectrum.hpp"
@@ -30,7 +31,13 @@ struct Signature {
   std::array<bool, max_blocks> negative{};  ///< det of the block < 0
   std::array<int, max_blocks> above{};      ///< periodic motion: real multipliers > 1
   std::array<int, max_blocks> flips{};      ///< periodic motion: real multipliers < -1
-  bool operator==(const Signature&) const = default;
+  bool operator==(const Signature& other) const {
+    int different = forward != other.forward ? 1 : 0;
+    for (std::size_t k = 0; k < max_blocks; ++k)
+      different |=
+          (unstable[k] ^ other.unstable[k]) | (above[k] ^ other.above[k]) | (flips[k] ^ other.flips[k]) | (negative[k] != other.negative[k] ? 1 : 0);
+    return different == 0;
+  }
   int total_unstable() const {
     int sum = 0;
     for (int count : unstable) sum += count;
@@ -43,7 +50,7 @@ struct Sample {
   Signature signature;
   double residual = 0.0;
   int iterations = 0;
-  std::array<double, Signature::max_blocks> lead{};   ///< per block, real part nearest zero; of a periodic motion per group, |mu| - 1 nearest zero
+  std::array<GrowthRates, Signature::max_blocks> rates{};  ///< per block real parts, of a periodic motion per group |mu| - 1
   std::array<double, Signature::max_blocks> kappa{};  ///< per block, squared imaginary part of the complex pair nearest the imaginary axis; 0: none
 };
 
@@ -92,13 +99,13 @@ class Curve {
   bool complete(In u, Out t, Signature& signature) { return tangent(t) && classify(u, t, signature); }
 
   /// Eigenvalues of r_x or Floquet multipliers at the point last classified; empty if the problem has neither.
-  const Eigen::VectorXcd& eigenvalues() const { return eigenvalues_; }
-  const std::array<double, Signature::max_blocks>& leads_now() const { return lead_; }  ///< test functions at the point last classified
+  const Eigen::VectorXcd& eigenvalues() const { return f_.is_flow() ? spectrum_.eigenvalues() : eigenvalues_; }
+  /// Test functions of the point last classified.
+  void copy_rates(Sample& to) const { std::copy_n(rates_.begin(), parts_, to.rates.begin()); }
   static int spectrum_size(const Problem& f);
   /// The problem as one of periodic motions; null if it is none.
   const OrbitProblem* orbit() const { return orbit_; }
-  int leads() const { return leads_; }  ///< test functions in use: one per block, or per group of multipliers met so far
-  const Matrix& jacobian() const { return jacobian_; }
+  int parts() const { return parts_; }  ///< of the spectrum: the blocks, or the groups of multipliers met so far
 
   /// Corrected and completed point near `guess`, in the plane through it normal to `normal`.
   bool sample(In guess, In normal, Sample& out);
@@ -107,14 +114,18 @@ class Curve {
   /// The same of rest points without a correction: on the cubic through both ends, off the curve by the fourth power of their distance.
   /// For looking about; what shows is to be corrected.
   bool peek(const Sample& a, const Sample& b, double sigma, Sample& out);
+  /// Of that only u and the tangent.
+  void guess(const Sample& a, const Sample& b, double sigma, Sample& out) const;
 
  private:
+  void copy_spectrum(Sample& to) const;
   void interpolate(const Sample& a, const Sample& b, double sigma, Vector& u) const;
   void border();
   void spread(const Vector& from, double scale, Out answer) const;
+  void add(const Vector& answer, Out u) const;
   double length_of(const Vector& from) const;
   void subtract_product(const Vector& x, Vector& y) const;
-  void right_side(In u, In anchor);
+  void right_side(Out u, In anchor);
   bool settle(Out u, In anchor, double previous, double last_step, Report& report);
   bool refine_tangent();
   void block_determinants(Signature& signature, bool forward);
@@ -125,16 +136,16 @@ class Curve {
   Blocks blocks_;
   CurveOptions options_;
   Spectrum spectrum_;
-  Eigen::VectorXcd eigenvalues_;
-  Eigen::VectorXi group_;  // of each multiplier
-  int leads_;
-  std::array<double, Signature::max_blocks> lead_{};
-  Vector weight_, r_, step_, normal_;  // normal_: weighted
-  Matrix jacobian_;
+  Eigen::VectorXcd eigenvalues_;  // of a periodic motion
+  Eigen::VectorXi group_;         // of each multiplier
+  int parts_;
+  std::array<GrowthRates, Signature::max_blocks> rates_{};
+  Vector weight_, r_, normal_;                        // normal_: weighted
   bool whole_;                                        // no symmetry: block 0 is everything, in order
   int state_;                                         // size of block 0
   Vector solution_, rhs_, refined_, last_, tangent_;  // last_: the unit vector of the plane
-  Matrix bordered_;                                   // at the point
+  Matrix bordered_, own_jacobian_;                    // at the point
+  MatrixOut jacobian_;                                // without symmetry the upper rows of the bordered matrix itself
   DenseLu lu_;                                        // of it, or of the one a correction earlier
   std::vector<Matrix> block_;
   std::vector<DenseLu> block_lu_;

@@ -34,6 +34,50 @@ void copy_sides(const SpecialPoint& from, SpecialPoint& to) {
   to.tangent = from.tangent;
 }
 
+// May a function that has these values at the ends touch zero between them? It is nearer to zero than it moved there or lately.
+bool may_touch(double from, double to, double past) {
+  if (std::isinf(from) && std::isinf(to)) return false;  // there is none
+  const double moved = std::max(std::abs(to - from), std::abs(from - past));
+  return !(std::min(std::abs(from), std::abs(to)) >= moved) && from * to > 0.0;
+}
+
+// Through three points.
+class Parabola {
+ public:
+  Parabola(double s0, double f0, double s1, double f1, double s2, double f2) : s_(s1), f_(f1) {
+    const double before = (f1 - f0) / (s1 - s0), behind = (f2 - f1) / (s2 - s1);
+    curvature_ = (behind - before) / (s2 - s0);
+    slope_ = before + curvature_ * (s1 - s0);
+    none_ = std::isinf(f0) && std::isinf(f1) && std::isinf(f2);
+  }
+  /// Nearer to zero on the way than it moves, or to zero.
+  bool comes_near_zero(double from, double to) const {
+    if (none_) return false;  // there is no such function
+    const auto [low, high] = range(from, to);
+    return !(low > high - low || -high > high - low);
+  }
+  /// That, where it turns on the way.
+  bool turns_near_zero(double from, double to) const {
+    const double turn = s_ - 0.5 * slope_ / curvature_;
+    return turn > from && turn < to && comes_near_zero(from, to) && std::abs(at(turn)) < std::min(std::abs(at(from)), std::abs(at(to)));
+  }
+  /// Of one sign, and nowhere three times what it is at zero or less than a third.
+  bool keeps_size(double from, double to) const {
+    const auto [low, high] = range(from, to);
+    const double here = at(0.0);
+    return std::min(low / here, high / here) > 0.3 && std::max(low / here, high / here) < 3.0;
+  }
+
+ private:
+  double at(double s) const { return f_ + (s - s_) * (slope_ + curvature_ * (s - s_)); }
+  std::pair<double, double> range(double from, double to) const {
+    const double turn = s_ - 0.5 * slope_ / curvature_, a = at(from), b = at(to), c = turn > from && turn < to ? at(turn) : a;
+    return {std::min({a, b, c}), std::max({a, b, c})};
+  }
+  double s_, f_, slope_, curvature_;  // at s_
+  bool none_;
+};
+
 Indices block_or_empty(const Blocks& blocks, int k) { return blocks.indices[static_cast<std::size_t>(k)]; }
 
 }  // namespace
@@ -55,7 +99,7 @@ std::vector<EventFinder::Kind> EventFinder::changes(const Signature& a, const Si
 
 // Multipliers of each group that left through -1, or in pairs. Real ones may meet and leave the axis, so only the parity of their number tells.
 void EventFinder::multiplier_changes(const Signature& a, const Signature& b, std::vector<Kind>& kinds) const {
-  for (int g = 0; g < curve_.leads(); ++g) {
+  for (int g = 0; g < curve_.parts(); ++g) {
     const auto slot = static_cast<std::size_t>(g);
     const bool flipped = (b.flips[slot] - a.flips[slot]) % 2 != 0, left = (b.above[slot] - a.above[slot]) % 2 != 0;
     if (flipped) kinds.push_back({EventType::period_doubling, g});
@@ -63,16 +107,21 @@ void EventFinder::multiplier_changes(const Signature& a, const Signature& b, std
   }
 }
 
-std::vector<SpecialPoint> EventFinder::find(const Sample& before, const Sample& a, const Sample& b, bool last) {
+// A search among signs that rounding makes would never end: what is left of it is told as unresolved.
+bool EventFinder::between(const Sample& a, const Sample& b, double sigma, Sample& out) {
+  return ++samples_ <= options_.most_samples && curve_.between(a, b, sigma, out);
+}
+
+std::vector<SpecialPoint>& EventFinder::find(const Sample& before, const Sample& a, const Sample& b, bool last) {
   found_.clear();
+  samples_ = 0;
   const bool turned = turns_at(before, a, b), was_changed = changed(before.signature, a.signature), is_changed = changed(a.signature, b.signature);
   // The neighbours of a step with an event are searched as it is itself: there two more may cancel, and nothing seems to turn.
-  const int beside = std::max(0, options_.suspicion_depth - 4);
   if (!was_changed && turned) look_closer(b, before, a, 0);  // b only tells how much things moved
-  else if (!was_changed && is_changed) look_closer(before, before, a, beside);
+  else if (!was_changed && is_changed && !quiet_beside(before, a, b)) look_closer(before, before, a, beside(), true);
   if (is_changed) explain(a, b, 1);
   else if (turned || last) look_closer(before, a, b, 0);
-  else if (was_changed) look_closer(a, a, b, beside);
+  else if (was_changed && !quiet_beside(b, a, before)) look_closer(a, a, b, beside(), true);
   std::sort(found_.begin(), found_.end(), [&](const auto& p, const auto& q) { return fraction(curve_, a, b, p.u) < fraction(curve_, a, b, q.u); });
   return found_;
 }
@@ -82,7 +131,7 @@ void EventFinder::explain(const Sample& a, const Sample& b, int depth) {
   if (kinds.empty()) {
     if (a.signature.unstable != b.signature.unstable) report_unresolved(a, b);
     // Beside an event two more may cancel: its own step is the last that looks here.
-    else if (curve_.length(b.u - a.u) > 1e-5) look_closer(a, a, b, std::max(0, options_.suspicion_depth - 4));
+    else if (curve_.length(b.u - a.u) > 1e-5) look_closer(a, a, b, beside());
     return;
   }
   for (const auto& kind : kinds) {
@@ -90,7 +139,7 @@ void EventFinder::explain(const Sample& a, const Sample& b, int depth) {
     if (locate(kind, a, b, point) && accept(kind, a, b, point, depth)) return;
   }
   Sample middle;
-  if (depth < options_.max_depth && curve_.between(a, b, 0.5, middle)) {
+  if (depth < options_.max_depth && between(a, b, 0.5, middle)) {
     explain(a, middle, depth + 1);
     explain(middle, b, depth + 1);
     return;
@@ -105,7 +154,7 @@ bool EventFinder::locate_multiple(const Sample& a, const Sample& b) {
   SpecialPoint p;
   p.type = EventType::branch_point;
   p.subtype = "multiple";
-  const double from = a.lead[0], to = b.lead[0], part = from * to < 0.0 ? from / (from - to) : 0.5;
+  const double part = secant(a, b, crossing({EventType::branch_point, 0}, a, b));
   p.u = a.u + part * (b.u - a.u);
   p.tangent = a.tangent;
   p.residual = std::max(a.residual, b.residual);
@@ -133,33 +182,38 @@ void EventFinder::report_unresolved(const Sample& a, const Sample& b) {
 
 // Does something that decides over events come nearer to zero and recede again, nearer than it moved?
 bool EventFinder::turns_at(const Sample& before, const Sample& a, const Sample& b) const {
-  const auto turns = [](double past, double from, double to) {
-    const double p = std::abs(past), f = std::abs(from), t = std::abs(to);
-    return f <= p && f <= t && f < std::max(std::abs(from - past), std::abs(to - from)) && past * from > 0.0 && from * to > 0.0;
-  };
-  const int n = curve_.problem().size();
-  bool found = turns(before.tangent[n], a.tangent[n], b.tangent[n]);
-  for (std::size_t k = 0; k < leads() && !found; ++k) found = turns(before.lead[k], a.lead[k], b.lead[k]);
-  return found;
+  return !all_next_to_zero(a, [&](const TestFunction& t) {
+    const double past = value(before, t), from = value(a, t), to = value(b, t), p = std::abs(past), f = std::abs(from), q = std::abs(to);
+    return !(f <= p && f <= q && f < std::max(std::abs(from - past), std::abs(to - from)) && past * from > 0.0 && from * to > 0.0);
+  });
 }
 
-void EventFinder::look_closer(const Sample& before, const Sample& a, const Sample& b, int depth) {
-  const int n = curve_.problem().size();
-  // Something that may touch zero and return: nearer to zero than it moved lately.
-  const auto suspicious = [](double past, double from, double to) {
-    const double moved = std::max(std::abs(from - past), std::abs(to - from));
-    return std::min(std::abs(from), std::abs(to)) < moved && from * to > 0.0;
-  };
-  bool near = suspicious(before.tangent[n], a.tangent[n], b.tangent[n]);
-  for (std::size_t k = 0; k < leads(); ++k) near = near || suspicious(before.lead[k], a.lead[k], b.lead[k]);
+double EventFinder::value(const Sample& s, const TestFunction& t) const {
+  return t.part < 0 ? s.tangent[curve_.problem().size()] : s.rates[static_cast<std::size_t>(t.part)].ranked(t.rank);
+}
+
+// Where the chord of the test function passes zero, in parts of the way; half way if it does not.
+double EventFinder::secant(const Sample& a, const Sample& b, const TestFunction& t) const {
+  const double f = value(a, t), g = value(b, t), part = f / (f - g);
+  return part > 0.0 && part < 1.0 ? part : 0.5;
+}
+
+EventFinder::TestFunction EventFinder::crossing(const Kind& kind, const Sample& a, const Sample& b) const {
+  if (kind.type == EventType::fold) return {-1, 0};
+  const auto slot = static_cast<std::size_t>(kind.block);
+  return {kind.block, std::min(a.rates[slot].positive(), b.rates[slot].positive()) + 1};
+}
+
+void EventFinder::look_closer(const Sample& before, const Sample& a, const Sample& b, int depth, bool anyway) {
+  const bool near = anyway || !all_next_to_zero(a, [&](const TestFunction& t) { return !may_touch(value(a, t), value(b, t), value(before, t)); });
   const double chord = curve_.length(b.u - a.u);
   if (!near || depth >= options_.suspicion_depth || !(chord > 0.0)) return;  // no chord: the first step has no point before it
   // Over a short stretch the cubic through its ends is the curve, near enough to see whether there is something to see.
   const bool glance = curve_.problem().is_flow() && chord < 0.01;
   Sample middle, left, right;
-  if (!(glance ? curve_.peek(a, b, 0.5, middle) : curve_.between(a, b, 0.5, middle))) return;
+  if (!(glance ? curve_.peek(a, b, 0.5, middle) : between(a, b, 0.5, middle))) return;
   if (changed(a.signature, middle.signature)) {
-    if (glance && !(curve_.sample(a.u, a.tangent, left) && curve_.sample(b.u, b.tangent, right) && curve_.between(left, right, 0.5, middle))) return;
+    if (glance && !(curve_.sample(a.u, a.tangent, left) && curve_.sample(b.u, b.tangent, right) && between(left, right, 0.5, middle))) return;
     explain(glance ? left : a, middle, depth + 1);
     explain(middle, glance ? right : b, depth + 1);
   } else if (depth + 1 < options_.suspicion_depth) {
@@ -176,10 +230,8 @@ void EventFinder::look_at_extrema(const Sample& a, const Sample& middle, const S
   struct Knot {
     double sigma, value;
   };
-  const int n = curve_.problem().size();
-  const auto test = [&](const Sample& s, int which) { return which < 0 ? s.tangent[n] : s.lead[static_cast<std::size_t>(which)]; };
-  for (int which = -1; which < static_cast<int>(leads()); ++which) {
-    Knot l{0.0, test(a, which)}, m{0.5, test(middle, which)}, r{1.0, test(b, which)};
+  all_next_to_zero(a, [&](const TestFunction& t) {
+    Knot l{0.0, value(a, t)}, m{0.5, value(middle, t)}, r{1.0, value(b, t)};
     for (int i = 0; i < 8; ++i) {
       const double from = (m.value - l.value) / (m.sigma - l.sigma), to = (r.value - m.value) / (r.sigma - m.sigma);
       const double curvature = (to - from) / (r.sigma - l.sigma), slope = from + curvature * (m.sigma - l.sigma);  // at m
@@ -187,13 +239,13 @@ void EventFinder::look_at_extrema(const Sample& a, const Sample& middle, const S
       if (!(sigma > l.sigma && sigma < r.sigma) || std::abs(sigma - m.sigma) < 1e-9) break;
       if (i > 0 && extremum * m.value > 0.0 && std::abs(extremum) > 0.5 * std::abs(m.value)) break;  // settled, away from zero
       Sample at;
-      if (!curve_.between(a, b, sigma, at)) break;
+      if (!between(a, b, sigma, at)) break;
       if (changed(a.signature, at.signature)) {
         explain(a, at, depth);
         explain(at, b, depth);
-        return;
+        return false;
       }
-      const Knot now{sigma, test(at, which)};
+      const Knot now{sigma, value(at, t)};
       if (std::abs(now.value) < std::abs(m.value)) {
         (sigma < m.sigma ? r : l) = m;
         m = now;
@@ -201,7 +253,8 @@ void EventFinder::look_at_extrema(const Sample& a, const Sample& middle, const S
         (sigma < m.sigma ? l : r) = now;
       }
     }
-  }
+    return true;
+  });
 }
 
 // Newton from the secant guess, else from ever narrower brackets.
@@ -210,25 +263,26 @@ bool EventFinder::locate(const Kind& kind, const Sample& a, const Sample& b, Spe
     const double s = fraction(curve_, a, b, p.u), chord = curve_.length(b.u - a.u);
     return s > -1e-6 && s < 1.0 + 1e-6 && curve_.length(p.u - (a.u + s * (b.u - a.u))) < 0.5 * chord + 1e-12;
   };
-  const auto test = [&](const Sample& s) {
-    return kind.type == EventType::fold ? s.tangent[curve_.problem().size()] : s.lead[static_cast<std::size_t>(kind.block)];
-  };
   const auto has = [&](const Signature& s, const Signature& t) {
     const auto list = changes(s, t);
     return std::any_of(list.begin(), list.end(), [&](const Kind& k) { return k.type == kind.type && k.block == kind.block; });
   };
   const bool has_system = curve_.problem().derivatives() >= 2;
-  Sample lo = a, hi = b, middle;
+  Sample middle;
+  if (has_system && curve_.problem().is_flow()) {  // most often Newton needs no point of the curve to start from
+    const double sigma = secant(a, b, crossing(kind, a, b));
+    const bool ready = kind.type != EventType::hopf || curve_.peek(a, b, sigma, middle);
+    if (kind.type != EventType::hopf) curve_.guess(a, b, sigma, middle);
+    if (ready && solve(kind, middle, out) && inside(out)) return true;
+  }
+  Sample lo = a, hi = b;
   double from = 0.0, to = 1.0;
   for (int i = 0; i < 48; ++i) {
-    const double f = test(lo), g = test(hi);
-    double part = f * g < 0.0 ? f / (f - g) : 0.5;
-    if (i % 3 == 2) part = 0.5;
-    part = std::clamp(part, 0.05, 0.95);
+    const double part = i % 3 == 2 ? 0.5 : std::clamp(secant(lo, hi, crossing(kind, lo, hi)), 0.05, 0.95);
     double sigma = from + part * (to - from);
-    if (!curve_.between(a, b, sigma, middle)) {  // a secant may hit a branch point to the last digit, where no tangent is
+    if (!between(a, b, sigma, middle)) {  // a secant may hit a branch point to the last digit, where no tangent is
       sigma = from + (part < 0.5 ? 1.1 : 0.9) * (sigma - from);
-      if (!curve_.between(a, b, sigma, middle)) return false;
+      if (!between(a, b, sigma, middle)) return false;
     }
     if (has_system && (i < 3 || i % 6 == 0) && solve(kind, middle, out) && inside(out)) return true;
     if (has(lo.signature, middle.signature)) {
@@ -290,10 +344,10 @@ bool EventFinder::solve(const Kind& kind, const Sample& near, SpecialPoint& out,
   const Vector start = system->unknowns(near.u);
   if (!start.allFinite()) return false;
   NewtonResult r = newton(*system, start, {.tolerance = 1e-13, .max_iterations = 12});
-  // At rounding level Newton may wander without meeting 1e-13: a tiny residual and a tiny last step count.
-  if (!r.ok() && !(r.outcome == Outcome::stalled && r.residual < 1e-12)) return false;
+  if (!r.settled()) return false;
   if (kind.type == EventType::hopf && !(static_cast<HopfSystem&>(*system).kappa(r.x) > 0.0)) return false;
   if (kind.type == EventType::torus && !(static_cast<TorusSystem&>(*system).kappa(r.x) > 0.0)) return false;
+  if (auto* point = dynamic_cast<BranchPointSystem*>(system.get()); point && !point->persists(r.x)) return false;
   out = {};
   out.type = kind.type;
   out.block = kind.block;
@@ -362,11 +416,55 @@ bool EventFinder::accept(const Kind& kind, const Sample& a, const Sample& b, Spe
     }
     found_.push_back(point);
     find_coincident(kind, point, left, right, delta, pairs_left, pairs_right);
-    explain(a, left, depth + 1);
-    explain(right, b, depth + 1);
+    explain_rest(a, left, right, b, depth + 1);
     return true;
   }
   return false;
+}
+
+// Between far and near nothing changed, between near and beyond something passed zero. One look half way: what passed was on its way there all along,
+// without a turn near zero, and the others come no nearer than they move.
+bool EventFinder::quiet_beside(const Sample& far, const Sample& near, const Sample& beyond) {
+  Sample middle;
+  if (!look_half_way(far, near, middle) || changed(near.signature, middle.signature)) return false;
+  const double way = curve_.length(near.u - far.u);
+  return all_next_to_zero(near, [&](const TestFunction& t) {
+    const Parabola f(0.0, value(far, t), 0.5 * way, value(middle, t), way, value(near, t));
+    return value(near, t) * value(beyond, t) < 0.0 ? !f.turns_near_zero(0.0, way) : !f.comes_near_zero(0.0, way);
+  });
+}
+
+// Half way between two points in either order; cheaply if it may be.
+bool EventFinder::look_half_way(const Sample& a, const Sample& b, Sample& middle) {
+  const bool onwards = curve_.dot(b.u - a.u, a.tangent) > 0.0;
+  const Sample &first = onwards ? a : b, &last = onwards ? b : a;
+  return curve_.problem().is_flow() ? curve_.peek(first, last, 0.5, middle) : between(first, last, 0.5, middle);
+}
+
+// What an event leaves of its step: from left of it back to a, from right of it on to b.
+void EventFinder::explain_rest(const Sample& a, const Sample& left, const Sample& right, const Sample& b, int depth) {
+  const double offset = 0.5 * curve_.length(right.u - left.u);
+  const auto slope = [&](const TestFunction& t) { return (value(right, t) - value(left, t)) / (2.0 * offset); };
+  if (changed(a.signature, left.signature)) explain(a, left, depth);
+  else if (!quiet_rest(left, a, -offset, slope)) look_closer(a, a, left, beside(), true);
+  if (changed(right.signature, b.signature)) explain(right, b, depth);
+  else if (!quiet_rest(right, b, offset, slope)) look_closer(right, right, b, beside(), true);
+}
+
+// Between near, at `offset` from an event, and far nothing changed: one look half way. A function f that passes zero at the event must go on from
+// there, f / (slope s), s the distance, keeping its sign and size, or it comes back. The others must not come nearer to zero than they move.
+template <class Slope>
+bool EventFinder::quiet_rest(const Sample& near, const Sample& far, double offset, const Slope& slope) {
+  const double way = std::copysign(curve_.length(far.u - near.u), offset), s0 = offset, s1 = offset + 0.5 * way, s2 = offset + way;
+  if (std::abs(way) < 1e-5) return true;
+  Sample middle;
+  if (!look_half_way(near, far, middle) || changed(near.signature, middle.signature)) return false;
+  return all_next_to_zero(near, [&](const TestFunction& t) {
+    const double at_event = value(near, t) - offset * slope(t), here = value(near, t), half = value(middle, t), there = value(far, t);
+    if (std::abs(at_event) > 0.5 * std::abs(here))
+      return !Parabola(s0, here, s1, half, s2, there).comes_near_zero(std::min(s0, s2), std::max(s0, s2));
+    return Parabola(0.0, slope(t), s1, half / s1, s2, there / s2).keeps_size(std::min(0.0, s2), std::max(0.0, s2));
+  });
 }
 
 // Other kinds at the same place: each has its own regular system.
@@ -495,7 +593,7 @@ bool EventFinder::mirror_crossing(const Sample& a, const Sample& b, int r, Speci
     if (blocks.indices[k].empty() || f.reflections()[static_cast<std::size_t>(r)].signs[blocks.indices[k].front()] > 0.0) continue;
     SingularSystem system(f, blocks.indices[0], blocks.indices[k], guess);
     const NewtonResult result = newton(system, system.unknowns(guess), {.tolerance = 1e-13, .max_iterations = 15});
-    if (!result.ok() && !(result.outcome == Outcome::stalled && result.residual < 1e-12)) continue;
+    if (!result.settled()) continue;
     const Vector u = system.base_point(result.x);
     const double chord = curve_.length(b.u - a.u);
     if (curve_.length(u - guess) > chord) continue;

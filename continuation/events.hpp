@@ -9,6 +9,7 @@
 /// but an eigenvalue or the turning of the parameter comes closer to zero than it moved, the step is looked at more closely: two events that cancel
 /// are found too.
 
+#include <algorithm>
 #include <functional>
 
 #include "continuation/augmented.hpp"
@@ -21,6 +22,7 @@ struct EventOptions {
   double tolerance = 1e-10;  ///< relative, of the located parameter
   int max_depth = 24;        ///< halvings of a step before a change counts as unresolved
   int suspicion_depth = 6;   ///< halvings while nothing changes but something comes near; then the vertex of a parabola
+  int most_samples = 2000;   ///< points looked at within one step
 };
 
 class EventFinder {
@@ -29,7 +31,8 @@ class EventFinder {
 
   /// Special points strictly between a and b in order; `before` is the accepted point before a (or a itself). Where nothing changed but something
   /// turned round at a near zero, the steps on both sides of a are searched. `last`: no further point will show a turn at b, so look now.
-  std::vector<SpecialPoint> find(const Sample& before, const Sample& a, const Sample& b, bool last = false);
+  /// Valid until the next call.
+  std::vector<SpecialPoint>& find(const Sample& before, const Sample& a, const Sample& b, bool last = false);
   bool turns_at(const Sample& before, const Sample& a, const Sample& b) const;
 
   /// A branch point next to `near`, where a walk can go no further because its range ends on it.
@@ -49,9 +52,38 @@ class EventFinder {
   std::vector<Kind> changes(const Signature& a, const Signature& b) const;
   void multiplier_changes(const Signature& a, const Signature& b, std::vector<Kind>& kinds) const;
   bool changed(const Signature& a, const Signature& b) const { return a.unstable != b.unstable || !changes(a, b).empty(); }
-  std::size_t leads() const { return static_cast<std::size_t>(curve_.leads()); }
   void explain(const Sample& a, const Sample& b, int depth);
-  void look_closer(const Sample& before, const Sample& a, const Sample& b, int depth);
+  /// What is left of a step beside an event: searched unless everything goes its way quietly.
+  void explain_rest(const Sample& a, const Sample& left, const Sample& right, const Sample& b, int depth);
+  template <class Slope>
+  bool quiet_rest(const Sample& near, const Sample& far, double offset, const Slope& slope);
+  bool quiet_beside(const Sample& far, const Sample& near, const Sample& beyond);
+  bool look_half_way(const Sample& a, const Sample& b, Sample& middle);
+  /// What may pass zero: the slope of the parameter along the curve, or the rank-th largest growth rate of a block or group.
+  struct TestFunction {
+    int part, rank;  // part -1: the slope
+  };
+  double value(const Sample& s, const TestFunction& t) const;
+  double secant(const Sample& a, const Sample& b, const TestFunction& t) const;
+  /// Calls f for the slope and for the growth rates nearest to zero at `here`, three on either side, until it says no. False if it did.
+  template <class F>
+  bool all_next_to_zero(const Sample& here, const F& f) const {
+    if (!f(TestFunction{-1, 0})) return false;
+    for (int k = 0; k < curve_.parts(); ++k) {
+      const auto& rates = here.rates[static_cast<std::size_t>(k)];
+      const int last = std::min(rates.positive() + 3, rates.count());
+      for (int rank = std::max(1, rates.positive() - 2); rank <= last; ++rank) {
+        if (!f(TestFunction{k, rank})) return false;
+        if (rank < last && rates.ranked(rank + 1) == rates.ranked(rank)) ++rank;  // a pair is looked at once
+      }
+    }
+    return true;
+  }
+  /// The one that passes zero at an event between a and b.
+  TestFunction crossing(const Kind& kind, const Sample& a, const Sample& b) const;
+  /// `anyway`: at least half way, whatever the ends say.
+  void look_closer(const Sample& before, const Sample& a, const Sample& b, int depth, bool anyway = false);
+  int beside() const { return std::max(0, options_.suspicion_depth - 4); }  // depth at which what lies beside an event is looked at
   void look_at_extrema(const Sample& a, const Sample& middle, const Sample& b, int depth);
   bool locate(const Kind& kind, const Sample& a, const Sample& b, SpecialPoint& out);
   bool solve(const Kind& kind, const Sample& near, SpecialPoint& out, double frequency = 0.0);  // frequency: of the pair meant, 0: the nearest
@@ -66,9 +98,12 @@ class EventFinder {
   bool solve_period_doubling(int group, const Sample& near, SpecialPoint& out);
   std::unique_ptr<AugmentedSystem> torus_system(int group, const Sample& near) const;
 
+  bool between(const Sample& a, const Sample& b, double sigma, Sample& out);
+
   Curve& curve_;
   EventOptions options_;
   std::vector<SpecialPoint> found_;
+  int samples_ = 0;  // of the step at hand
 };
 
 }  // namespace whirl::continuation

@@ -27,7 +27,7 @@ std::optional<SpecialPoint> period_doubling_near(const OrbitProblem& f, In u, in
   for (const int k : period_doubling_blocks(doubled, blocks, guess, group)) {
     SingularSystem system(doubled, blocks.indices[0], blocks.indices[static_cast<std::size_t>(k)], guess);
     const NewtonResult at = newton(system, system.unknowns(guess), {.tolerance = 1e-13, .max_iterations = 12});
-    if (!at.ok() && !(at.outcome == Outcome::stalled && at.residual < 1e-11)) continue;
+    if (!at.settled(1e-11)) continue;
     SpecialPoint point;
     point.type = EventType::branch_point;
     point.subtype = period_doubling_subtype;

@@ -1,5 +1,7 @@
 #include "continuation/spectrum.hpp"
 
+#include <cmath>
+
 namespace whirl::continuation {
 namespace {
 
@@ -20,7 +22,7 @@ void two_by_two(const Matrix& a, std::complex<double>& z0, std::complex<double>&
 
 }  // namespace
 
-Spectrum::Spectrum(const Blocks& blocks) : blocks_(&blocks), unstable_(Eigen::VectorXi::Zero(static_cast<int>(blocks.indices.size()))) {
+Spectrum::Spectrum(const Blocks& blocks) : blocks_(&blocks), rates_(blocks.indices.size()) {
   int n = 0;
   for (const auto& indices : blocks.indices) {
     const int m = static_cast<int>(indices.size());
@@ -30,7 +32,6 @@ Spectrum::Spectrum(const Blocks& blocks) : blocks_(&blocks), unstable_(Eigen::Ve
     solver_.push_back(m > 2 ? std::make_unique<Eigen::EigenSolver<Matrix>>(m) : nullptr);
   }
   eigenvalues_ = Eigen::VectorXcd::Zero(n);
-  lead_ = Vector::Zero(unstable_.size());
 }
 
 bool Spectrum::compute(MatrixIn jacobian) {
@@ -39,8 +40,16 @@ bool Spectrum::compute(MatrixIn jacobian) {
     const auto& indices = blocks_->indices[k];
     const int m = static_cast<int>(indices.size());
     Matrix& a = block_[k];
-    for (int j = 0; j < m; ++j)
-      for (int i = 0; i < m; ++i) a(i, j) = jacobian(indices[std::size_t(i)], indices[std::size_t(j)]);
+    double* to = a.data();
+    if (block_.size() == 1) {  // no symmetry: everything, in order
+      const double* from = jacobian.data();
+      const auto skip = jacobian.outerStride() - m;
+      for (int j = 0; j < m; ++j, from += skip)
+        for (int i = 0; i < m; ++i) *to++ = *from++;
+    } else {
+      for (const int j : indices)
+        for (const int i : indices) *to++ = jacobian(i, j);
+    }
     if (m == 1) eigenvalues_[first] = a(0, 0);
     if (m == 2) two_by_two(a, eigenvalues_[first], eigenvalues_[first + 1]);
     const bool few = m == 3 || m == 4;
@@ -50,18 +59,21 @@ bool Spectrum::compute(MatrixIn jacobian) {
       eigenvalues_.segment(first, m) = solver_[k]->eigenvalues();
       if (few) factors_[k].restart(eigenvalues_.data() + first, m);
     }
-    int count = 0;
-    double lead = std::numeric_limits<double>::infinity();
+    rates_[k].clear();
     for (int i = first; i < first + m; ++i) {
-      const double re = eigenvalues_[i].real();
-      if (re > 0.0) ++count;
-      if (std::abs(re) < std::abs(lead)) lead = re;
+      const std::complex<double> z = eigenvalues_[i];
+      if (!std::isfinite(z.real() + z.imag())) return false;
+      rates_[k].add(z.real());
     }
-    unstable_[static_cast<int>(k)] = count;
-    lead_[static_cast<int>(k)] = lead;
     first += m;
   }
-  return eigenvalues_.allFinite();
+  return true;
+}
+
+int Spectrum::unstable() const {
+  int sum = 0;
+  for (const auto& r : rates_) sum += r.positive();
+  return sum;
 }
 
 double Spectrum::kappa(int block) const {

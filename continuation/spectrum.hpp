@@ -6,6 +6,7 @@
 
 #include "continuation/blocks.hpp"
 #include "continuation/characteristic.hpp"
+#include "continuation/growth_rates.hpp"
 
 namespace whirl::continuation {
 
@@ -17,10 +18,9 @@ class Spectrum {
   [[nodiscard]] bool compute(MatrixIn jacobian);
 
   const Eigen::VectorXcd& eigenvalues() const { return eigenvalues_; }  ///< block after block
-  int unstable(int block) const { return unstable_[block]; }            ///< eigenvalues of the block with positive real part
-  int unstable() const { return unstable_.sum(); }
-  /// Real part nearest to zero in the block: the test function that announces an event.
-  double lead(int block) const { return lead_[block]; }
+  /// Real parts next to zero of a block: the test functions that announce events.
+  const GrowthRates& rates(int block) const { return rates_[static_cast<std::size_t>(block)]; }
+  int unstable() const;  ///< eigenvalues with positive real part
   /// Squared imaginary part of the complex pair nearest the imaginary axis in the block; 0 without one.
   double kappa(int block) const;
 
@@ -30,8 +30,7 @@ class Spectrum {
   std::vector<std::unique_ptr<Eigen::EigenSolver<Matrix>>> solver_;
   std::vector<RealFactors> factors_;  // of blocks of size 3 and 4, from the point before
   Eigen::VectorXcd eigenvalues_;
-  Eigen::VectorXi unstable_;
-  Vector lead_;
+  std::vector<GrowthRates> rates_;
 };
 
 }  // namespace whirl::continuation

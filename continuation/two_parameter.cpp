@@ -100,6 +100,7 @@ class Follower {
  private:
   SpecialPoint at(In y) const;  // the special point behind the system's unknowns, with its normal form
   std::vector<Test> tests() const;
+  void add_other_blocks(std::vector<Test>& all) const;
   Test double_root() const;
   Vector base(In y) const { return system_->base_point(y); }
   double crossing_pair(In y, double kappa = 0.0) const;  // real part of the pair nearest the axis, away from the critical one
@@ -117,7 +118,9 @@ class Follower {
   mutable Vector sense_;
   Blocks blocks_;
   std::unique_ptr<AugmentedSystem> system_;
-  std::vector<double> largest_odd_;  // on the curve, for each reflection
+  mutable std::vector<std::unique_ptr<SingularSystem>> others_;  // the same states, singular in another block
+  std::vector<double> largest_odd_;                              // on the curve, for each reflection
+  Vector start_;                                                 // (x, p1, p2)
 };
 
 SpecialPoint Follower::at(In y) const {
@@ -228,6 +231,7 @@ std::vector<Test> Follower::tests() const {
     if (singular) all.push_back(double_root());
     if (f_.is_flow()) all.push_back({"ZH", [this](In y) { return crossing_pair(y); }});
   }
+  if (singular && point_.type != EventType::hopf) add_other_blocks(all);
   if (const auto* torus = dynamic_cast<const TorusSystem*>(system_.get())) {
     const auto& orbit = dynamic_cast<const OrbitProblem&>(f_);
     for (const int q : {3, 4})
@@ -240,6 +244,21 @@ std::vector<Test> Follower::tests() const {
     if (f_.size() >= 4) all.push_back({"HH", [this, hopf](In y) { return crossing_pair(y, hopf->kappa(y)); }});
   }
   return all;
+}
+
+// Where r_x is singular in a second symmetry block as well, a curve of folds and one of pitchforks cross, or two of pitchforks.
+void Follower::add_other_blocks(std::vector<Test>& all) const {
+  const Indices& state = blocks_.indices[0];
+  others_.clear();
+  for (int k = 0; k < static_cast<int>(blocks_.indices.size()); ++k) {
+    const Indices& block = blocks_.indices[static_cast<std::size_t>(k)];
+    if (k == point_.block || block.empty()) continue;
+    others_.push_back(std::make_unique<SingularSystem>(f_, state, block, start_));
+    all.push_back({k == 0 || point_.block == 0 ? "FP" : "PP", [this, other = others_.back().get(), r = Vector(system_->size())](In y) mutable {
+                     other->residual(y, r);
+                     return r[r.size() - 1];
+                   }});
+  }
 }
 
 // Secant and bisection on the test function between points i and i + 1 of the walked system.
@@ -282,6 +301,7 @@ DefiningCurve Follower::run(double p2, const Observer& observer) {
   const int n = f_.size();
   Vector u(n + 2);
   u << point_.u, p2;
+  start_ = u;
   system_ = make_system(f_, point_, blocks_, options_.walk.peaks, u);
   TwoParameterOptions o = options_;
   o.walk.lower = o.range2[0];
@@ -349,6 +369,7 @@ DefiningCurve Follower::run(double p2, const Observer& observer) {
   std::vector<double> last(all.size(), std::nan(""));
   for (int i = 0; i < count; ++i) {
     system_->update_borders(b.u(i));
+    for (auto& other : others_) other->update_borders(b.u(i));
     const SpecialPoint s = at(b.u(i));
     curve.u.col(i) = base(b.u(i));
     if (const double apart = (curve.u.col(i) - u).norm();

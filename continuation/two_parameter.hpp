@@ -8,7 +8,8 @@
 ///
 ///     on a fold curve     CP  cusp (the quadratic coefficient vanishes), BT  Bogdanov-Takens (w'v = 0), ZH  zero-Hopf (a pair crosses)
 ///     on a Hopf curve     GH  generalised Hopf (l1 = 0), BT (frequency -> 0), ZH (a real eigenvalue crosses)
-///     on a branch-point curve   DP  degenerate pitchfork (the cubic coefficient vanishes: super- to subcritical), and LP of the curve itself:
+///     on a branch-point curve   DP  degenerate pitchfork (the cubic coefficient vanishes: super- to subcritical)
+///     where symmetry parts r_x   FP  folds and pitchforks cross, PP  pitchforks that break different symmetries cross
 ///     of periodic motions   R1 a second multiplier at 1 (on LP and BP curves), R2 at -1 (on PD curves), R3, R4 multipliers at the third and fourth
 ///     roots
 ///                         of 1 (on TR curves)
@@ -19,7 +20,7 @@
 namespace whirl::continuation {
 
 struct CodimensionTwo {
-  std::string type;  ///< CP, BT, ZH, GH, DP, or MIN / MAX: extremum of the second parameter along the curve
+  std::string type;  ///< CP, BT, ZH, GH, DP, FP, PP, or MIN / MAX: extremum of the second parameter along the curve
   Vector u;          ///< (x, p1, p2)
   double residual = 0.0;
   double arclength = 0.0;

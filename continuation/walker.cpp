@@ -43,9 +43,11 @@ struct Walker::State {
   }
   Curve curve;
   EventFinder finder;
+  std::vector<int> broken;  // reflections that the branch does not keep
   Branch branch;
   std::array<Sample, 3> samples;
   Sample *before = &samples[0], *now = &samples[1], *next = &samples[2];  // change places
+  SpecialPoint crossing;                                                  // the branch point on a symmetric branch that a step meets
   Vector predicted, bend, start_u, start_tangent;
   Eigen::VectorXcd eigenvalues;  // of `next`, kept while events are looked for
   Curve::Report report;
@@ -53,6 +55,7 @@ struct Walker::State {
   double factor = 1.0;  // by which the next step may change
   double max_turn;      // between successive tangents of unit length
   int accepted = 0;
+  int refinements = 0;  // of the step at hand, for the sake of events
   bool scale_from_slope = false;
   bool has_signature = false;  // of `now`; not at a branch point, where it is undefined
   bool has_before = false;     // `before` is a point of its own
@@ -94,7 +97,10 @@ Branch Walker::walk_from(const Vector& u0, const Vector& direction, bool from_br
       shorten_step();
       continue;
     }
-    locate_events();
+    if (!locate_events()) {
+      shorten_step();
+      continue;
+    }
     accept();
     lengthen_step();
   }
@@ -126,6 +132,8 @@ bool Walker::begin(const Vector& u0, const Vector& direction, bool from_branch_p
   s_ = std::make_unique<State>(problem_, make_blocks(problem_, active), options_);
   State& s = *s_;
   s.branch.active_reflections = active;
+  for (int r = 0; r < static_cast<int>(problem_.reflections().size()); ++r)
+    if (std::find(active.begin(), active.end(), r) == active.end()) s.broken.push_back(r);
   const double range = options_.upper - options_.lower;
   s.largest_x = u0.head(n).norm();
   if (s.largest_x < rounding) s.largest_x = 0.0;  // Newton's remainder tells nothing of the size of x
@@ -203,8 +211,7 @@ bool Walker::correct() {
     return false;
   }
   // A jump into a symmetric branch is no step along this one.
-  for (int r = 0; r < static_cast<int>(problem_.reflections().size()); ++r) {
-    if (std::find(s.branch.active_reflections.begin(), s.branch.active_reflections.end(), r) != s.branch.active_reflections.end()) continue;
+  for (const int r : s.broken) {
     const auto& signs = problem_.reflections()[static_cast<std::size_t>(r)].signs;
     double odd = 0.0, was_odd = 0.0;
     for (int i = 0; i < n; ++i)
@@ -227,7 +234,7 @@ bool Walker::correct() {
   // Newton has gone sideways by half the step or more: to another part of the curve, though it may run the same way there.
   if (s.step_taken > 1.12 * s.step && !first_off_branch_point && s.step > 4.0 * options_.min_step) return false;
   if (!s.curve.classify(s.next->u, s.next->tangent, s.next->signature)) return false;  // last: eigenvalues cost most
-  s.next->lead = s.curve.leads_now();
+  s.curve.copy_rates(*s.next);
   s.eigenvalues = s.curve.eigenvalues();
   s.next->residual = s.report.residual;
   s.next->iterations = s.report.iterations;
@@ -289,41 +296,54 @@ void Walker::lengthen_step() {
   s.step = std::clamp(s.step / s.factor, options_.min_step, options_.max_step);
 }
 
-void Walker::locate_events() {
+// False if the step must be refined.
+bool Walker::locate_events() {
   State& s = *s_;
-  if (!options_.locate_events || !s.has_signature) return;
-  SpecialPoint crossing;
-  for (int r = 0; r < static_cast<int>(problem_.reflections().size()); ++r) {
-    const auto& active = s.branch.active_reflections;
-    if (std::find(active.begin(), active.end(), r) != active.end() || !s.finder.mirror_crossing(*s.now, *s.next, r, crossing)) continue;
+  if (!options_.locate_events || !s.has_signature) return true;
+  for (const int r : s.broken) {
+    if (!s.finder.mirror_crossing(*s.now, *s.next, r, s.crossing)) continue;
     // Stop on the branch point; what lies between is still looked at. Not nearer than 1e-3 of the step: the critical eigenvalue and the
     // slope of the parameter vanish with the square of the distance.
     const Vector chord = s.next->u - s.now->u;
     Sample last;
-    if (s.curve.sample(crossing.u - 1e-3 * s.step_taken * crossing.tangent, chord, last))
+    if (s.curve.sample(s.crossing.u - 1e-3 * s.step_taken * s.crossing.tangent, chord, last))
       for (auto& e : s.finder.find(*s.before, *s.now, last)) {
         e.arclength = s.arclength + s.curve.length(e.u - s.now->u);
         s.branch.special.push_back(std::move(e));
       }
-    s.next->u = crossing.u;
+    s.next->u = s.crossing.u;
     s.step_taken = s.curve.length(s.next->u - s.now->u);
-    crossing.arclength = s.arclength + s.step_taken;
-    s.branch.special.push_back(std::move(crossing));
+    s.crossing.arclength = s.arclength + s.step_taken;
+    s.branch.special.push_back(std::move(s.crossing));
     s.stop = StopReason::symmetric_branch;
-    return;
+    return true;
   }
   // At either end of the walk there is no point beyond that would show a turn.
   const int first = s.branch.start_reason == StopReason::known_branch_point ? 1 : 0;
   const bool last = s.stop != StopReason::none || s.accepted == first;
-  if (last || !(s.now->signature == s.next->signature) || !(s.before->signature == s.now->signature) || s.finder.turns_at(*s.before, *s.now, *s.next))
-    for (auto& e : s.finder.find(*s.before, *s.now, *s.next, last)) {
+  if (last || !(s.now->signature == s.next->signature) || !(s.before->signature == s.now->signature) ||
+      s.finder.turns_at(*s.before, *s.now, *s.next)) {
+    auto& found = s.finder.find(*s.before, *s.now, *s.next, last);
+    if (std::any_of(found.begin(), found.end(), [this](const auto& e) { return asks_for_shorter_step(e); })) return false;
+    s.refinements = 0;
+    for (auto& e : found) {
       if (is_known(e)) continue;
       const Vector from_now = e.u - s.now->u;
       const bool behind = s.curve.dot(from_now, s.next->u - s.now->u) < 0.0;
       e.arclength = s.arclength + (behind ? -1.0 : 1.0) * s.curve.length(from_now);
       s.branch.special.push_back(std::move(e));
     }
+  }
   find_peaks_and_values();
+  return true;
+}
+
+// A change that nothing explains may be a jump to another curve; a fold out of range means that the curve was out of range for a while.
+bool Walker::asks_for_shorter_step(const SpecialPoint& e) {
+  State& s = *s_;
+  if (e.type == EventType::unresolved) return ++s.refinements <= 5 && s.step > 1e-4 * options_.max_step;
+  const double margin = 1e-9 * (options_.upper - options_.lower), p = e.u[problem_.size()];
+  return e.type == EventType::fold && (p > options_.upper + margin || p < options_.lower - margin) && s.step > 1e-5 * options_.max_step;
 }
 
 // A step may be searched twice, as the one behind and as the one ahead of a turn.
@@ -402,7 +422,7 @@ void Walker::find_peak(const Observable& peak) {
     if (peak.form && problem_.derivatives() >= 2) {  // its own system, from ever nearer
       PeakSystem system(problem_, s.curve.blocks().indices[0], *peak.form, at.u);
       const NewtonResult r = newton(system, system.unknowns(at.u), {.tolerance = 1e-13, .max_iterations = 12});
-      const bool solved = r.ok() || (r.outcome == Outcome::stalled && r.residual < 1e-12);
+      const bool solved = r.settled();
       const Vector chord = s.next->u - s.now->u;
       Vector u = at.u;
       if (solved) u = system.base_point(r.x);

@@ -70,7 +70,8 @@ class Walker {
   bool correct();
   void shorten_step();
   void accept();
-  void locate_events();
+  bool locate_events();
+  bool asks_for_shorter_step(const SpecialPoint& e);
   bool leaves_range(In u, In direction) const;
   bool reach_bound(int index, double bound);
   bool within_bounds(int& index, double& bound) const;

@@ -151,12 +151,22 @@ void DenseLu::compute(MatrixIn a) {
   with_size(n_, [&](auto size) { odd_ = factor<size()>(a.data(), a.outerStride(), a_, pivot_); });
 }
 
-void DenseLu::solve(In b, Out x) const {
-  if (n_ > small) x = large_.solve(b);
-  else with_size(n_, [&](auto size) { substitute<size()>(a_, pivot_, b.data(), x.data()); });
+void DenseLu::solve_small(const double* b, double* x) const {
+  with_size(n_, [&](auto size) { substitute<size()>(a_, pivot_, b, x); });
 }
 
-void DenseLu::solve_two(In b, In d, Out x, Out y) const {
+void DenseLu::solve(In b, Out x) const {
+  if (n_ > small) x = large_.solve(b);
+  else solve_small(b.data(), x.data());
+}
+
+void DenseLu::solve(const Vector& b, Vector& x) const {
+  if (n_ > small) x = large_.solve(b);
+  else solve_small(b.data(), x.data());
+}
+
+template <class B, class X>
+void DenseLu::solve_pair(const B& b, const B& d, X& x, X& y) const {
   if (n_ > small) {
     x = large_.solve(b);
     y = large_.solve(d);
@@ -164,6 +174,9 @@ void DenseLu::solve_two(In b, In d, Out x, Out y) const {
   }
   with_size(n_, [&](auto size) { substitute_two<size()>(a_, pivot_, b.data(), d.data(), x.data(), y.data()); });
 }
+
+void DenseLu::solve_two(In b, In d, Out x, Out y) const { solve_pair(b, d, x, y); }
+void DenseLu::solve_two(const Vector& b, const Vector& d, Vector& x, Vector& y) const { solve_pair(b, d, x, y); }
 
 void DenseLu::solve_transposed(In b, Out x) const {
   if (n_ > small) x = large_.transpose().solve(b);

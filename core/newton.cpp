@@ -54,7 +54,8 @@ NewtonResult newton(const Problem& f, Vector start, const NewtonOptions& options
     result.iterations = i + 1;
     // Done when this step, or at the rate of the last two the one to come, is below the tolerance.
     const double step = dx.lpNorm<Eigen::Infinity>(), rate = i > 0 ? std::min(step / previous, 1.0) : 1.0;
-    if (step * rate <= options.tolerance * (1.0 + result.x.head(n).lpNorm<Eigen::Infinity>())) {
+    result.last_step = step / (1.0 + result.x.head(n).lpNorm<Eigen::Infinity>());
+    if (result.last_step * rate <= options.tolerance) {
       f.residual(result.x, r);
       result.residual = r.lpNorm<Eigen::Infinity>();
       result.outcome = r.allFinite() ? Outcome::converged : Outcome::non_finite;

@@ -23,7 +23,12 @@ struct NewtonResult {
   double residual;  ///< largest |r_i|
   int iterations;
   Outcome outcome;
+  double last_step = 1.0;  ///< relative to 1 + |x|
   bool ok() const { return outcome == Outcome::converged; }
+  /// Converged, or wandering at the level of rounding: steps and residual are tiny, yet not below the tolerance.
+  bool settled(double largest_residual = 1e-12) const {
+    return ok() || (outcome == Outcome::stalled && residual < largest_residual && last_step < 1e-10);
+  }
 };
 
 /// Solves r(x, p) = 0 for x, the last k entries of `start` held.

@@ -76,7 +76,7 @@ PencilModes lowest_modes(const Matrix& K, const Matrix& M, int count, bool vecto
 
 int negative_eigenvalues(const Matrix& A, Eigen::Index stiff) {
   if (A.rows() != A.cols()) throw std::invalid_argument("a matrix with an inertia is square");
-  if (stiff <= 0 || stiff > A.rows()) return negative_in_sturm_sequence(A);
+  if (stiff <= 0 || stiff >= A.rows()) return negative_in_sturm_sequence(A);
   const auto rest = A.rows() - stiff;
   const Eigen::LLT<Matrix> llt(A.topLeftCorner(stiff, stiff));
   if (llt.info() != Eigen::Success) return negative_in_sturm_sequence(A);

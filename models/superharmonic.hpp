@@ -54,10 +54,11 @@ void slow_flow(const SlowFlowCoefficients<S>& c, const R& u1, const R& v1, const
   const R a = u1 * u1 + v1 * v1, b = u2 * u2 + v2 * v2;
   const R s1 = u1 * u1 - v1 * v1, t1 = u1 * v1 * 2.0, s2 = u2 * u2 - v2 * v2, t2 = u2 * v2 * 2.0;  // Z^2 = s + i t
   const R m1 = a * c.g1 + b * (c.g2 * 2.0) + c.detuning1, m2 = b * c.g4 + a * (c.g3 * 2.0) + c.detuning2;
-  r[0] = (-(u1 * c.damping1) - m1 * v1 - (t2 * u1 - s2 * v1) * c.g2) / c.nw2;
-  r[1] = (-(v1 * c.damping1) + m1 * u1 + (s2 * u1 + t2 * v1) * c.g2) / c.nw2;
-  r[2] = (-(u2 * c.damping2) - m2 * v2 - (t1 * u2 - s1 * v2) * c.g3 - c.load_im) / c.nw2;
-  r[3] = (-(v2 * c.damping2) + m2 * u2 + (s1 * u2 + t1 * v2) * c.g3 + c.load_re) / c.nw2;
+  const S scale = 1.0 / c.nw2;
+  r[0] = (-(u1 * c.damping1) - m1 * v1 - (t2 * u1 - s2 * v1) * c.g2) * scale;
+  r[1] = (-(v1 * c.damping1) + m1 * u1 + (s2 * u1 + t2 * v1) * c.g2) * scale;
+  r[2] = (-(u2 * c.damping2) - m2 * v2 - (t1 * u2 - s1 * v2) * c.g3 - c.load_im) * scale;
+  r[3] = (-(v2 * c.damping2) + m2 * u2 + (s1 * u2 + t1 * v2) * c.g3 + c.load_re) * scale;
 }
 
 /// What the lenses turn: parameters to coefficients to field, in any scalar.
@@ -141,12 +142,12 @@ CableNumbers<S> cable_numbers(const Cable<S>& cable, const StayModel<S>& model) 
           K * 0.5 / cable.chord_length * cos(theta) * k.c2};
 }
 
-/// z1, z2: damping ratios, U: support amplitude, w: frequency. T: double where no lens moves the cable, else S.
-template <class S, class T>
-SlowFlowCoefficients<S> slow_flow_coefficients(const CableNumbers<T>& k, const S& z1, const S& z2, const S& U, const S& w, int order) {
+/// z1, z2: damping ratios, U: support amplitude, w: frequency. Each S where a lens moves it, double where none does: that is half the work.
+template <class S, class T, class Z, class A, class W>
+SlowFlowCoefficients<S> slow_flow_coefficients(const CableNumbers<T>& k, const Z& z1, const Z& z2, const A& U, const W& w, int order) {
   const double n = order;
   SlowFlowCoefficients<S> c;
-  c.nw2 = w * (2.0 * n);
+  c.nw2 = S(w * (2.0 * n));
   c.damping1 = z1 * k.w1 * c.nw2;
   c.damping2 = z2 * k.w2 * c.nw2;
   c.g1 = S(k.g1);
@@ -154,16 +155,18 @@ SlowFlowCoefficients<S> slow_flow_coefficients(const CableNumbers<T>& k, const S
   c.g3 = S(k.g3);
   c.g4 = S(k.g4);
   // Z0 = F2 (x - i y) / (x^2 + y^2)
-  const S w_squared = w * w, x = k.w2 * k.w2 - w_squared, y = z2 * k.w2 * w * 2.0;
-  const S scale = U * (w_squared * k.load_w2 + k.load) / (x * x + y * y);
+  const auto w_squared = w * w, nw_squared = w_squared * (n * n);
+  const auto x = k.w2 * k.w2 - w_squared;
+  const auto y = z2 * k.w2 * w * 2.0;
+  const S scale(U * (w_squared * k.load_w2 + k.load) / (x * x + y * y));
   c.Z0_re = scale * x;
   c.Z0_im = -(scale * y);
-  const S Z0Z0 = c.Z0_re * c.Z0_re + c.Z0_im * c.Z0_im, nw_squared = w_squared * (n * n);
+  const S Z0Z0 = c.Z0_re * c.Z0_re + c.Z0_im * c.Z0_im;
   c.detuning1 = k.w1 * k.w1 - nw_squared + Z0Z0 * k.g2 * 2.0;
   c.detuning2 = k.w2 * k.w2 - nw_squared + Z0Z0 * k.g4 * 2.0;
   c.load_re = c.load_im = S(0.0);
   if (order == 2) {
-    const S beta2 = U * k.beta;
+    const S beta2(U * k.beta);
     c.load_re = beta2 * c.Z0_re;
     c.load_im = beta2 * c.Z0_im;
   } else if (order == 3) {
@@ -176,7 +179,7 @@ SlowFlowCoefficients<S> slow_flow_coefficients(const CableNumbers<T>& k, const S
 
 template <class S>
 SlowFlowCoefficients<S> slow_flow_coefficients(const StayParameters<S>& p, const StayModel<S>& model, int order) {
-  return slow_flow_coefficients<S, S>(cable_numbers(p.cable, model), p.damping_out_of_plane, p.damping_in_plane, p.support_amplitude, p.omega, order);
+  return slow_flow_coefficients<S>(cable_numbers(p.cable, model), p.damping_out_of_plane, p.damping_in_plane, p.support_amplitude, p.omega, order);
 }
 
 template <class S>
@@ -187,6 +190,8 @@ SlowFlowCoefficients<S> SuperharmonicModel::coefficients(std::span<const S> p) c
     return slow_flow_coefficients(record, stay_model(record.cable, options_.coefficients), options_.order);
   }
   // Only numbers that leave statics and modes alone: what the constructor computed holds.
+  if (moves_.size() == 1 && moves_[0].w)
+    return slow_flow_coefficients<S>(cable_, stay_.damping_out_of_plane, stay_.damping_in_plane, stay_.support_amplitude, p[0], options_.order);
   S z1(stay_.damping_out_of_plane), z2(stay_.damping_in_plane), U(stay_.support_amplitude), w(stay_.omega);
   for (std::size_t i = 0; i < lenses_.size(); ++i) {
     if (moves_[i].z1) z1 = p[i];
@@ -194,7 +199,7 @@ SlowFlowCoefficients<S> SuperharmonicModel::coefficients(std::span<const S> p) c
     if (moves_[i].U) U = p[i];
     if (moves_[i].w) w = p[i];
   }
-  return slow_flow_coefficients<S, double>(cable_, z1, z2, U, w, options_.order);
+  return slow_flow_coefficients<S>(cable_, z1, z2, U, w, options_.order);
 }
 
 }  // namespace whirl::models

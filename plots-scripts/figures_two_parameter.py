@@ -32,7 +32,7 @@ POINTS = {
     "DP": ("D", 5.0, "DP degenerate pitchfork"), "BT": ("s", 5.2, "BT Bogdanov–Takens"), "ZH": ("X", 6.5, "ZH zero-Hopf"),
     "R1": ("s", 5.2, "R1 resonance 1:1"), "R2": ("s", 5.2, "R2 resonance 1:2"), "R3": ("h", 6.0, "R3 resonance 1:3"),
     "R4": ("p", 6.0, "R4 resonance 1:4"), "GH": ("h", 6.5, "GH generalised Hopf"),
-    "HH": ("8", 6.5, "HH double Hopf"), "CP": ("*", 8.5, "CP cusp"), "threshold": ("o", 5.5, "threshold of whirling"),
+    "FP": ("P", 6.5, "FP fold and pitchfork"), "PP": ("P", 6.5, "PP two pitchforks"), "HH": ("8", 6.5, "HH double Hopf"), "CP": ("*", 8.5, "CP cusp"), "threshold": ("o", 5.5, "threshold of whirling"),
     "MIN": ("v", 3.6, "minimum"), "MAX": ("^", 3.6, "maximum"),
 }
 QUIET = ("MIN", "MAX")      # marked, not named

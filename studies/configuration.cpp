@@ -426,7 +426,7 @@ class Configuration::Reader {
 
   void read() {
     visit_table(root_, "");
-    for (const Alternative& a : schema().alternatives()) check_alternative(a);
+    check_alternatives();
     for (const Key& key : into_.schema_.keys()) {
       if (into_.values_.contains(key.name) || !replaced_by(key).empty()) continue;
       if (key.required) missing(key.name, "must be " + key.accepted() + instead_of(key));
@@ -450,19 +450,21 @@ class Configuration::Reader {
 
   /// "; or give [modal_model]" for a key that another section may stand in for.
   std::string instead_of(const Key& key) const {
+    std::vector<std::string> others;
     for (const Alternative& a : schema().alternatives())
       if (std::find(a.sections.begin(), a.sections.end(), section_of(key.name)) != a.sections.end())
-        return fmt::format("; or give [{}] in place of [{}]", fmt::join(a.free_sections, "] or ["), section_of(key.name));
-    return "";
+        others.insert(others.end(), a.free_sections.begin(), a.free_sections.end());
+    return others.empty() ? "" : fmt::format("; or give [{}] in place of [{}]", fmt::join(others, "] or ["), section_of(key.name));
   }
 
-  void check_alternative(const Alternative& a) const {
+  void check_alternatives() const {
     std::string present;
-    for (const std::string& name : a.free_sections) {
-      if (!into_.raw_.contains(name)) continue;
-      if (!present.empty()) throw InputError(fmt::format("{}: [{}]: is not taken beside [{}]", into_.place(name), name, present));
-      present = name;
-    }
+    for (const Alternative& a : schema().alternatives())
+      for (const std::string& name : a.free_sections) {
+        if (!into_.raw_.contains(name) || name == present) continue;
+        if (!present.empty()) throw InputError(fmt::format("{}: [{}]: is not taken beside [{}]", into_.place(name), name, present));
+        present = name;
+      }
     for (const Key& key : schema().keys())
       if (into_.values_.contains(key.name) && !replaced_by(key).empty())
         throw into_.error(key.name, fmt::format("is not taken beside [{}]", replaced_by(key)));

@@ -8,14 +8,19 @@
 #include "continuation/deflation.hpp"
 #include "core/kinsol.hpp"
 #include "models/closed_forms.hpp"
+#include "studies/averaged_source.hpp"
+#include "studies/cable_model_keys.hpp"
 #include "studies/common_keys.hpp"
 #include "studies/equilibrium_model_input.hpp"
+#include "studies/slow_flow_ansatz.hpp"
 
 namespace whirl::studies {
 namespace {
 
 using namespace models;
 using namespace continuation;
+
+constexpr const char* own_ansatz = "superharmonic";  // n omega in both modes with closed forms, response.order
 
 /// Averaged superharmonic response of a stay.
 class StaySource : public EquilibriumSource {
@@ -196,14 +201,21 @@ class ExpressionSource : public EquilibriumSource {
 }  // namespace
 
 void add_equilibrium_source_keys(Schema& s) {
-  add_stay_keys(s);
+  add_forced_system_keys(s);
   s.add_count("response.order", "superharmonic order n", 2, 2, 50);
+  add_ansatz_keys(s, own_ansatz);
   s.add_free(equilibrium_model_section());
-  s.add_alternative({.sections = {"cable", "model", "damping", "support_motion", "response"}, .free_sections = {"equilibrium_model"}});
+  s.add_alternative({.sections = {"cable", "model", "damping", "support_motion", "response", "ansatz"}, .free_sections = {"equilibrium_model"}});
+  s.add_alternative({.sections = {"response"}, .free_sections = {"modal_model"}});
 }
 
 std::unique_ptr<EquilibriumSource> equilibrium_source(const Configuration& c) {
   if (c.has("equilibrium_model")) return std::make_unique<ExpressionSource>(c);
+  if (c.text("ansatz.kind") != own_ansatz) return averaged_source(c);
+  if (c.has("modal_model")) throw c.error("ansatz.kind", "is for a [cable]: choose the ansatz of the [modal_model], \"complete\" or \"list\" say");
+  if (!is_plain_stay(c))
+    throw c.error("ansatz.kind",
+                  "has two modes, the upper end moved horizontally: choose another ansatz for what [model] or [support_motion] ask for");
   return std::make_unique<StaySource>(c);
 }
 

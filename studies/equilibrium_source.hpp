@@ -1,5 +1,6 @@
 #pragma once
-/// Where the equilibrium problem of a study comes from: the averaged superharmonic slow flow of a [cable], or an [equilibrium_model].
+/// Where the equilibrium problem of a study comes from: the averaged superharmonic slow flow of a [cable], the slow flow of any [ansatz] of a
+/// [cable] or a [modal_model] (averaged_source.hpp), or an [equilibrium_model].
 /// The kinds `continuation` and `two-parameter` ask it for problems, columns, names and starts and know nothing else of the model.
 ///
 ///     const auto source = equilibrium_source(configuration);
@@ -42,7 +43,7 @@ class EquilibriumSource {
   virtual void write(ResultFile& file) const = 0;
 };
 
-/// [cable] and what belongs to it, response.order, or [equilibrium_model].
+/// [cable] and what belongs to it, or [modal_model], with response.order or [ansatz]; or [equilibrium_model].
 void add_equilibrium_source_keys(Schema& schema);
 std::unique_ptr<EquilibriumSource> equilibrium_source(const Configuration& c);
 

@@ -242,7 +242,7 @@ void write_chart_points(ResultFile& file, const Setup& s, const std::vector<std:
   std::vector<Column> table{
       {s.parameter, units[0], "first parameter", {}}, {s.second, units[1], "second parameter", {}}, {"residual", "-", "of the defining system", {}}};
   TextColumn names{"curve", "curve the point lies on", {}},
-      types{"type", "CP cusp, DP degenerate pitchfork, MIN and MAX of the second parameter", {}};
+      types{"type", "CP cusp, DP degenerate pitchfork, FP fold and pitchfork, PP two pitchforks, MIN and MAX of the second parameter", {}};
   for (const auto& curve : chart.curves)
     for (const auto& z : curve.special) {
       const Eigen::Index last = z.u.size() - 1;

@@ -33,12 +33,14 @@ Ansatz listed_ansatz(const Configuration& c, int coordinates) {
 
 }  // namespace
 
-void add_ansatz_keys(Schema& s) {
+void add_ansatz_keys(Schema& s, const std::string& own_default) {
+  std::vector<std::string> kinds = {"complete", "list", "frozen", "combinatorial-32", "combinatorial-32-printed"};
+  if (!own_default.empty()) kinds.insert(kinds.begin(), own_default);
   s.add({.name = "ansatz.kind",
          .description = "harmonics kept: 0..H of omega/nu in all coordinates, your lists, n omega with the linear response frozen, or the paper's "
                         "combinatorial response (3,2) by exact projection or with its printed terms only",
-         .default_value = std::string("combinatorial-32"),
-         .choices = {"complete", "list", "frozen", "combinatorial-32", "combinatorial-32-printed"}});
+         .default_value = own_default.empty() ? std::string("combinatorial-32") : own_default,
+         .choices = kinds});
   s.add({.name = "ansatz.motion",
          .description = "of the combinatorial response: q1 at 1/2, 3/2 and q2 at 0, 1, 2 (60), or q2 at 1/2, 1, 3/2 (70)",
          .default_value = std::string("coupled"),
@@ -90,6 +92,47 @@ AveragedEquations averaged_of(const Configuration& c, const ForcedSystem& forced
     throw c.error("ansatz.kind", e.what());
   }
   return a;
+}
+
+std::string harmonic_name(const Ansatz& ansatz, int i, int k) { return fmt::format("q{}_h{:.6g}", i + 1, static_cast<double>(k) / ansatz.nu); }
+
+std::vector<PointColumn> harmonic_columns(const ForcedSystem& forced, const Ansatz& a) {
+  std::vector<PointColumn> columns;
+  const int size = a.size();
+  for (const bool phases : {false, true})
+    for (int i = 0; i < a.coordinates(); ++i)
+      for (const int k : a.harmonics[static_cast<std::size_t>(i)]) {
+        const std::string& coordinate = forced.coordinates[static_cast<std::size_t>(i)];
+        const std::string name = harmonic_name(a, i, k),
+                          wave = fmt::format("cos({:g} omega t + phase) in {}", static_cast<double>(k) / a.nu, coordinate);
+        const auto z = [a, size, i, k](In u) { return amplitude(a, u.head(size), i, k); };
+        if (phases && k > 0) columns.push_back({name + "_phase", "rad", "phase of " + wave, [z](In u) { return std::arg(z(u)); }});
+        if (!phases && k > 0) columns.push_back({name, forced.length_unit, "amplitude of " + wave, [z](In u) { return std::abs(z(u)); }});
+        if (!phases && k == 0) columns.push_back({name, forced.length_unit, "mean of " + coordinate, [z](In u) { return z(u).real(); }});
+      }
+  return columns;
+}
+
+std::string motion_prefix(const ForcedSystem& forced, const Ansatz& a, const continuation::Branch& b) {
+  const Vector x = b.u(b.points() / 2).head(a.size());
+  bool subharmonic = false, flipped = false;
+  for (int i = 0; i < a.coordinates(); ++i)
+    for (const int k : a.harmonics[static_cast<std::size_t>(i)]) {
+      const bool present = std::abs(amplitude(a, x, i, k)) > 1e-9 * x.norm();
+      subharmonic = subharmonic || (present && k % a.nu != 0);
+      flipped = flipped || (present && !forced.reflections.empty() && forced.reflections[0].signs[static_cast<std::size_t>(i)] < 0);
+    }
+  if (forced.reflections.empty()) return subharmonic ? "D" : "P";
+  return std::string(flipped ? "W" : "IP") + (subharmonic ? "D" : "");
+}
+
+Vector symmetric_to_the_bit(const Problem& f, Vector u) {
+  const double limit = 1e-9 * u.head(f.size()).lpNorm<Eigen::Infinity>();
+  for (const auto& reflection : f.reflections()) {
+    const auto odd = reflection.signs.array() < 0.0;
+    if ((odd.cast<double>() * u.head(f.size()).array()).abs().maxCoeff() <= limit) u.head(f.size()).array() *= (!odd).cast<double>();
+  }
+  return u;
 }
 
 }  // namespace whirl::studies

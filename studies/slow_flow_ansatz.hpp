@@ -2,6 +2,7 @@
 /// The ansatz of a slow-flow study: its keys and the averaged equations they choose.
 
 #include "models/slow_flow/ansatz.hpp"
+#include "studies/branch_output.hpp"
 #include "studies/forced_system.hpp"
 
 namespace whirl::studies {
@@ -15,9 +16,18 @@ struct AveragedEquations {
   int balance_harmonics = 0;
 };
 
-/// [ansatz]
-void add_ansatz_keys(Schema& schema);
+/// [ansatz]. `own_default`: a further kind, which the study handles itself, and the default.
+void add_ansatz_keys(Schema& schema, const std::string& own_default = "");
 /// `forced` must outlive the result. Throws InputError (one line) for lists and systems that do not fit.
 AveragedEquations averaged_of(const Configuration& c, const ForcedSystem& forced);
+
+/// "q2_h1.5": harmonic 3/2 of the second coordinate.
+std::string harmonic_name(const models::Ansatz& ansatz, int i, int k);
+/// Amplitudes and means, then phases, of a point (x, parameters).
+std::vector<PointColumn> harmonic_columns(const ForcedSystem& forced, const models::Ansatz& ansatz);
+/// "IP" in plane, "W" whirling, "IPD" and "WD" where a subharmonic is present; "P" and "D" for a model without that reflection.
+std::string motion_prefix(const ForcedSystem& forced, const models::Ansatz& ansatz, const continuation::Branch& branch);
+/// A solution symmetric but for rounding is made so to the last bit: the walker tells symmetric branches by exact zeros.
+Vector symmetric_to_the_bit(const Problem& f, Vector u);
 
 }  // namespace whirl::studies

@@ -129,38 +129,11 @@ BranchOutput output_of(const Setup& s) {
   out.parameter = s.parameter;
   out.parameter_unit = s.forced.lens_units.front();
   const Ansatz& a = s.averaged.ansatz;
-  const int size = a.size();
-  for (const bool phases : {false, true})
-    for (int i = 0; i < a.coordinates(); ++i)
-      for (const int k : a.harmonics[static_cast<std::size_t>(i)]) {
-        const std::string name = harmonic_name(a, i, k), wave = fmt::format("cos({:g} omega t + phase) in {}", static_cast<double>(k) / a.nu,
-                                                                            s.forced.coordinates[static_cast<std::size_t>(i)]);
-        const auto z = [&a, size, i, k](In u) { return amplitude(a, u.head(size), i, k); };
-        if (phases && k > 0) out.columns.push_back({name + "_phase", "rad", "phase of " + wave, [z](In u) { return std::arg(z(u)); }});
-        if (!phases && k > 0) out.columns.push_back({name, s.forced.length_unit, "amplitude of " + wave, [z](In u) { return std::abs(z(u)); }});
-        if (!phases && k == 0)
-          out.columns.push_back(
-              {name, s.forced.length_unit, "mean of " + s.forced.coordinates[static_cast<std::size_t>(i)], [z](In u) { return z(u).real(); }});
-      }
+  out.columns = harmonic_columns(s.forced, a);
   out.columns.push_back({"floquet_modulus", "-",
                          fmt::format("largest modulus of the Floquet multipliers of this motion over {} excitation periods; above 1: unstable", a.nu),
                          floquet_modulus(s)});
   return out;
-}
-
-// "IP" in plane, "W" whirling, "IPD" and "WD" where a subharmonic is present; "P" and "D" for a model without that reflection.
-std::string prefix_of(const Setup& s, const Branch& b) {
-  const Ansatz& a = s.averaged.ansatz;
-  const Vector x = b.u(b.points() / 2).head(a.size());
-  bool subharmonic = false, flipped = false;
-  for (int i = 0; i < a.coordinates(); ++i)
-    for (const int k : a.harmonics[static_cast<std::size_t>(i)]) {
-      const bool present = std::abs(amplitude(a, x, i, k)) > 1e-9 * x.norm();
-      subharmonic = subharmonic || (present && k % a.nu != 0);
-      flipped = flipped || (present && !s.forced.reflections.empty() && s.forced.reflections[0].signs[static_cast<std::size_t>(i)] < 0);
-    }
-  if (s.forced.reflections.empty()) return subharmonic ? "D" : "P";
-  return std::string(flipped ? "W" : "IP") + (subharmonic ? "D" : "");
 }
 
 // ---- finding branches ------------------------------------------------------------------------------------------------------
@@ -196,18 +169,8 @@ std::vector<std::vector<SteadyMotion>> settled_motions(const Configuration& c, c
   return motions;
 }
 
-// A solution symmetric but for rounding is made so to the last bit: the walker tells symmetric branches by exact zeros.
-Vector snapped(const Problem& f, Vector u) {
-  const double limit = 1e-9 * u.head(f.size()).lpNorm<Eigen::Infinity>();
-  for (const auto& reflection : f.reflections()) {
-    const auto odd = reflection.signs.array() < 0.0;
-    if ((odd.cast<double>() * u.head(f.size()).array()).abs().maxCoeff() <= limit) u.head(f.size()).array() *= (!odd).cast<double>();
-  }
-  return u;
-}
-
 void add(const Setup& s, Network& net, const Vector& solution, const std::string& origin) {
-  const NewtonResult r = newton(*s.averaged.flow, snapped(*s.averaged.flow, solution), patient);
+  const NewtonResult r = newton(*s.averaged.flow, symmetric_to_the_bit(*s.averaged.flow, solution), patient);
   if (r.ok() && net.add_seed(r.x, origin)) net.switch_branches();
 }
 
@@ -310,7 +273,7 @@ ExitStatus run(const Configuration& c, RunContext& context) {
   write_forced_system(file, c);
   file.attribute("/study", "nu", static_cast<double>(s->averaged.ansatz.nu));
   Network net(*s->averaged.flow, s->network);
-  net.set_namer([&](const Branch& b) { return prefix_of(*s, b); });
+  net.set_namer([&](const Branch& b) { return motion_prefix(s->forced, s->averaged.ansatz, b); });
   net.set_observer([&](const Branch& b, int i) {
     if (i % 50 == 0) context.progress.show(fmt::format("branch at {} = {:.6g}, {} points", s->parameter, b.parameter(i), i));
     return !interrupted;

@@ -128,8 +128,6 @@ double amplitude_of(const Ansatz& ansatz, const SteadyMotion& motion, int i, int
   return std::abs(motion.harmonic(i, static_cast<double>(k) / ansatz.nu));
 }
 
-std::string harmonic_name(const Ansatz& ansatz, int i, int k) { return fmt::format("q{}_h{:.6g}", i + 1, static_cast<double>(k) / ansatz.nu); }
-
 std::vector<IntegratedRun> integrate_beside(const ForcedSystem& forced, const AveragedEquations& averaged, const std::vector<double>& omegas,
                                             const std::vector<std::vector<AveragedSolution>>& solutions, const IntegrationOptions& o,
                                             RunContext& context) {

@@ -35,8 +35,6 @@ struct IntegrationOptions {
 
 /// Amplitude of harmonic k (units of omega/nu) of coordinate i.
 double amplitude_of(const models::Ansatz& ansatz, const models::SteadyMotion& motion, int i, int k);
-/// "q2_h1.5": harmonic 3/2 of the second coordinate.
-std::string harmonic_name(const models::Ansatz& ansatz, int i, int k);
 
 /// From every averaged solution and from the starts at each frequency, on all cores.
 std::vector<IntegratedRun> integrate_beside(const ForcedSystem& forced, const AveragedEquations& averaged, const std::vector<double>& omegas,

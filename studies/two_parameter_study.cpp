@@ -221,10 +221,11 @@ ExitStatus run(const Configuration& c, RunContext& context) {
   std::vector<Column> table{{s.first, s.source->unit(s.first), "first parameter", {}},
                             {s.second, s.source->unit(s.second), "second parameter", {}},
                             {"residual", "-", "of the defining system", {}}};
-  TextColumn names{"curve", "curve the point lies on", {}}, types{"type",
-                                                                  "CP cusp, BT Bogdanov-Takens, ZH zero-Hopf, GH generalised Hopf, HH double Hopf, "
-                                                                  "DP degenerate pitchfork, MIN and MAX of the second parameter",
-                                                                  {}};
+  TextColumn names{"curve", "curve the point lies on", {}},
+      types{"type",
+            "CP cusp, BT Bogdanov-Takens, ZH zero-Hopf, GH generalised Hopf, HH double Hopf, "
+            "DP degenerate pitchfork, FP fold and pitchfork, PP two pitchforks, MIN and MAX of the second parameter",
+            {}};
   for (const auto& curve : curves)
     for (const auto& z : curve.special) {
       table[0].values.push_back(z.u[n]);

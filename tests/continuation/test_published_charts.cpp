@@ -272,3 +272,28 @@ TEST_CASE("Hopf points of the Brusselator on a line, eight cells", "[published]"
   REQUIRE(found.size() == wanted.size());
   for (std::size_t i = 0; i < found.size(); ++i) CHECK(std::abs(found[i] - wanted[i]) < 1e-10);
 }
+
+TEST_CASE("where curves of folds and of pitchforks cross") {
+  // y breaks on either half of a parabola with its fold at mu = 0: x = -nu, mu = nu^2.
+  const System parabola{{"x", "y"}, {"mu - x^2 - 0.3*y^2", "(nu + x)*y - y^3"}, {{"mu", 1.0}, {"nu", 0.5}}, {{"y"}}};
+  // x breaks at p = 0, y at p = d
+  const System two{{"x", "y"}, {"p*x - x^3 - 1.5*x*y^2", "(p-d)*y - y^3 - 0.5*y*x^2"}, {{"p", -0.5}, {"d", 0.3}}, {{"x"}, {"y"}}};
+  const struct {
+    const System& system;
+    const char *first, *second, *type;
+    double p2;
+    Vector start;
+  } cases[] = {{parabola, "mu", "nu", "FP", 0.5, Eigen::Vector3d(1.0, 0.0, 1.0)}, {two, "p", "d", "PP", 0.3, Eigen::Vector3d(0.0, 0.0, -0.5)}};
+  for (const auto& c : cases) {
+    const EquilibriumFlow f = c.system.flow({c.first}), f2 = c.system.flow({c.first, c.second});
+    const Branch b = Walker(f, {.lower = -1.0, .upper = 1.0}).walk(c.start);
+    REQUIRE(b.special.size() == 2);
+    for (const auto& s : b.special) {
+      const DefiningCurve curve = follow(f2, s, c.p2, {.range1 = {-1.0, 1.0}, .range2 = {-0.9, 0.9}});
+      CAPTURE(c.type, to_string(s.type));
+      REQUIRE(std::count_if(curve.special.begin(), curve.special.end(), [&](const auto& z) { return z.type == c.type; }) == 1);
+      for (const auto& z : curve.special)
+        if (z.type == c.type) CHECK(z.u.norm() < 1e-9);
+    }
+  }
+}

@@ -184,3 +184,83 @@ TEST_CASE("the averaged response of a stay is a continuation too", "[continuatio
   CHECK(std::any_of(folds.begin(), folds.end(), [](double w) { return std::abs(w - 2.2051616201) < 1e-9; }));
   CHECK_FALSE(values(r.out, "RP", "omega").empty());
 }
+
+TEST_CASE("thresholds of whirling of a modal model, one harmonic in each coordinate", "[continuation_study]") {
+  // Planar motion of amplitude A: A^2 ((1 - w^2 + 3/4 A^2)^2 + c^2 w^2) = F^2. A small motion out of plane sees 1 - w^2 + A^2/2 and A^2/4 of its
+  // conjugate: it grows from (1 - w^2 + A^2/2)^2 + c^2 w^2 = A^4/16 on.
+  const RunFolder f;
+  constexpr double c = 0.02;
+  const auto planar = [](double w, double A) { return A * A * (std::pow(1.0 - w * w + 0.75 * A * A, 2) + c * c * w * w); };
+  const auto onset = [](double w, double A) { return std::pow(1.0 - w * w + 0.5 * A * A, 2) + c * c * w * w - std::pow(A, 4) / 16.0; };
+  std::string text = slurp(study("string-threshold.toml"));
+  SECTION("branches") {
+    text = std::regex_replace(text, std::regex("\"two-parameter\""), "\"continuation\"");
+    text = text.substr(0, text.find("[second]"));
+    const Ran r = f.run_text(text, "--json --set 'continuation.peaks=[\"q1_h1\"]'");
+    INFO(r.err);
+    REQUIRE(r.status == 0);
+    auto omega = values(r.out, "BP", "omega"), A = values(r.out, "BP", "q1_h1");
+    const auto same = [](double a, double b) { return std::abs(a - b) < 1e-9; };  // the whirling branch meets one of them again
+    omega.erase(std::unique(omega.begin(), omega.end(), same), omega.end());
+    A.erase(std::unique(A.begin(), A.end(), same), A.end());
+    REQUIRE(omega.size() == 2);  // A grows with omega between them
+    REQUIRE(A.size() == 2);
+    CHECK(omega[0] == Approx(1.0180097647).epsilon(0).margin(1e-10));
+    CHECK(omega[1] == Approx(1.0728304789).epsilon(0).margin(1e-10));
+    for (std::size_t i = 0; i < 2; ++i) {
+      CHECK(planar(omega[i], A[i]) == Approx(1e-4).epsilon(1e-9));
+      CHECK(std::abs(onset(omega[i], A[i])) < 1e-12);
+    }
+    CHECK(values(r.out, "LP", "omega").size() >= 2);
+    const auto peak = values(r.out, "RP", "q1_h1");  // in plane A c w = F where the phase is a right angle, hardly below the largest
+    CHECK(std::any_of(peak.begin(), peak.end(), [](double a) { return std::abs(a - 0.46) < 0.03; }));
+  }
+  SECTION("chart") {
+    const Ran r = f.run_text(text, "--json");
+    INFO(r.err);
+    REQUIRE(r.status == 0);
+    const auto F = values(r.out, "MIN", "F");
+    REQUIRE_FALSE(F.empty());
+    std::stringstream lines(r.out);
+    int thresholds = 0;
+    for (std::string line; std::getline(lines, line);) {
+      std::smatch w, A, amplitude;
+      if (line.find("\"type\": \"MIN\"") == std::string::npos || line.find("\"curve\": \"PF") == std::string::npos) continue;
+      REQUIRE(std::regex_search(line, w, std::regex("\"omega\": ([-+0-9.eE]+)")));
+      REQUIRE(std::regex_search(line, A, std::regex("\"q1_h1\": ([-+0-9.eE]+)")));
+      REQUIRE(std::regex_search(line, amplitude, std::regex("\"F\": ([-+0-9.eE]+)")));
+      const double omega = std::stod(w[1]), a = std::stod(A[1]), force = std::stod(amplitude[1]);
+      CHECK(planar(omega, a) == Approx(force * force).epsilon(1e-9));
+      CHECK(std::abs(onset(omega, a)) < 1e-12);
+      for (const double step : {-1e-3, 1e-3}) {  // along the onset the force grows on either side
+        const double b = a + step, x = 0.5 * b * b, w2 = 1.0 + x - 0.5 * c * c;
+        // (1 - w^2 + x)^2 + c^2 w^2 = x^2/4, a quadratic in w^2
+        const double root = std::sqrt(w2 * w2 - (1.0 + x) * (1.0 + x) + 0.25 * x * x);
+        const double near = std::abs(w2 + root - omega * omega) < std::abs(w2 - root - omega * omega) ? w2 + root : w2 - root;
+        CHECK(planar(std::sqrt(near), b) > force * force);
+      }
+      ++thresholds;
+    }
+    CHECK(thresholds == 1);
+  }
+}
+
+TEST_CASE("an ansatz for a cable in a continuation: with enough harmonics the exact onset of whirling", "[continuation_study]") {
+  const RunFolder f;
+  std::string text = slurp(study("oresund-threshold.toml"));
+  text = std::regex_replace(text, std::regex("\"two-parameter\""), "\"continuation\"");
+  text = text.substr(0, text.find("[second]"));
+  const Ran r = f.run_text(text + "\n[ansatz]\nkind = \"complete\"\nharmonics = 10\n", "--json --set continuation.range=[1.4,1.7]");
+  INFO(r.err);
+  REQUIRE(r.status == 0);
+  const auto onset = values(r.out, "BP", "omega");
+  CHECK(std::any_of(onset.begin(), onset.end(), [](double w) { return std::abs(w - 1.58096018215) < 1e-7; }));  // of the exact motion
+  const Ran more = f.run_text(text, "--set support_motion.direction=vertical");
+  CHECK(more.status == 2);
+  CHECK(more.err.find("ansatz.kind = \"superharmonic\": has two modes, the upper end moved horizontally") != std::string::npos);
+  std::string model = slurp(study("string-threshold.toml"));
+  model = model.substr(0, model.find("[ansatz]")) + model.substr(model.find("[continuation]"));
+  const Ran unchosen = f.run_text(model);
+  CHECK(unchosen.status == 2);
+  CHECK(unchosen.err.find("ansatz.kind = \"superharmonic\": is for a [cable]") != std::string::npos);
+}

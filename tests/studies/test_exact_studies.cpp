@@ -65,6 +65,17 @@ TEST_CASE("periodic: the Oresund stay about its whirling point, motions checked 
   CHECK(std::count(branch.begin(), branch.end(), "W1") == 1);
 }
 
+TEST_CASE("periodic: the whole Oresund study with its chart, past the degenerate point of the whirling folds", "[slow]") {
+  const fs::path result = scratch("chart.h5");
+  const Ran r = run("run " + inputs + "oresund-periodic.toml -o " + result.string() + " --quiet");
+  INFO(r.out);
+  REQUIRE(r.status == 0);
+  CHECK(r.out.find("unresolved") == std::string::npos);
+  CHECK(r.out.find("gave up") == std::string::npos);
+  const ResultReader file(result);
+  CHECK(omega_of(file, "IP1", "BP1") == Approx(1.58096018215).epsilon(0).margin(1e-10));
+}
+
 TEST_CASE("periodic: a modal model, the exact folds of the Duffing oscillator", "[published]") {
   // x'' + .05 x' + x + .1 x^3 = .18 cos wt: folds of the exact periodic response.
   const fs::path study = write("duffing.toml", R"(

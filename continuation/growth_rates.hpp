@@ -1,0 +1,45 @@
+#pragma once
+/// The growth rates next to zero: real parts of eigenvalues, or |mu| - 1 of multipliers. A complex pair counts twice. In order of size they move
+/// continuously along a curve, so that "the r-th largest" is a test function that neither jumps nor forgets whose it is.
+
+#include <array>
+#include <limits>
+#include <utility>
+
+namespace whirl::continuation {
+
+class GrowthRates {
+ public:
+  GrowthRates() { clear(); }
+  void clear() {
+    positive_ = count_ = 0;
+    above_.fill(std::numeric_limits<double>::infinity());
+    below_.fill(-std::numeric_limits<double>::infinity());
+  }
+  void add(double rate) {
+    ++count_;
+    if (rate > 0.0) {
+      ++positive_;
+      for (double& other : above_)
+        if (rate < other) std::swap(rate, other);
+    } else {
+      for (double& other : below_)
+        if (rate > other) std::swap(rate, other);
+    }
+  }
+  int positive() const { return positive_; }
+  int count() const { return count_; }
+  /// The r-th largest, r >= 1; infinite where there is none or more than three others stand between it and zero.
+  double ranked(int r) const {
+    const int up = positive_ - r, down = r - positive_ - 1;
+    if (up >= 0) return up < kept ? above_[static_cast<std::size_t>(up)] : std::numeric_limits<double>::infinity();
+    return down < kept ? below_[static_cast<std::size_t>(down)] : -std::numeric_limits<double>::infinity();
+  }
+
+ private:
+  static constexpr int kept = 4;  // on either side: as many as two pairs that cross at once
+  int positive_ = 0, count_ = 0;
+  std::array<double, kept> above_, below_;  // nearest first
+};
+
+}  // namespace whirl::continuation
