@@ -43,7 +43,7 @@ NB = "\u00a0"  # keeps a number and its unit on one line
 
 
 def label(symbol, unit):
-    return symbol if unit in ("", "-") else f"{symbol} [{unit}]"
+    return symbol if unit in ("", "-") else f"{symbol} [{unit.replace('^2', '²')}]"
 
 
 def number(x, digits=3):

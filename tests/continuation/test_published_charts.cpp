@@ -144,7 +144,7 @@ TEST_CASE("generalised Hopf points of FitzHugh-Nagumo and Chua", "[published]") 
   CHECK(std::abs(circuit[0].u[4] - 1.81678697037) < 1e-9);
 }
 
-TEST_CASE("the extended Lorenz-84 model has every codimension-2 point of rest", "[published]") {
+TEST_CASE("the extended Lorenz-84 model has every codimension-2 point of rest", "[published][slow]") {
   const auto curves = chart(lorenz_84, {"F", "T"}, ranges(-1.5, 3.2, -0.1, 0.1), {2.9787, -0.03868, 0.05823, -0.02105, 3.0});
   const EquilibriumFlow f2 = lorenz_84.flow({"F", "T"});
   CHECK(curves.size() == 4);  // one of folds, three of Hopf points

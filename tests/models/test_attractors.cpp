@@ -241,7 +241,7 @@ TEST_CASE("quasi-periodic motion beyond the torus points of the whirling branch"
   }
 }
 
-TEST_CASE("Ueda's attractor is chaotic with the published exponent", "[published]") {
+TEST_CASE("Ueda's attractor is chaotic with the published exponent", "[published][slow]") {
   // x'' + 0.05 x' + x^3 = 7.5 cos t: 0.1034 in [Sprott2003]. Another published run has 0.0999, which longer runs do not confirm.
   const auto ueda = duffing(0.05, 0.0, 1.0, 7.5, 1.0);
   const Attractor a = settled(ueda, point({2.5, 0.0}), MotionKind::chaotic);

@@ -78,7 +78,7 @@ class Planar {
 
 }  // namespace
 
-TEST_CASE("threshold of the first out-of-plane mode by Floquet about the exact planar motion", "[published]") {
+TEST_CASE("threshold of the first out-of-plane mode by Floquet about the exact planar motion", "[published][slow]") {
   struct Row {
     double ratio;
     double threshold[3];  // mm, with 1, 2, 4 in-plane modes, three digits

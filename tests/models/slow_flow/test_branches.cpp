@@ -96,7 +96,7 @@ TEST_CASE("slow flow: the complete ansatz tends to the exact periodic motion", "
   }
 }
 
-TEST_CASE("slow flow: whirling threshold, frozen linear part and complete ansatz") {
+TEST_CASE("slow flow: whirling threshold, frozen linear part and complete ansatz", "[slow]") {
   const auto two = stay_system(oresund(), {Lens("omega"), Lens("support_amplitude")}, Terms::reduced, Coefficients::exact);
   const auto threshold = [&](const Ansatz& a) {
     const SlowFlow flow(stay_over_omega(), a, whirling), flow2(two, a, whirling);
@@ -121,7 +121,7 @@ TEST_CASE("slow flow: whirling threshold, frozen linear part and complete ansatz
   CHECK(complete[1] < 0.318111237);
 }
 
-TEST_CASE("slow flow: stability against Floquet multipliers of the same motion") {
+TEST_CASE("slow flow: stability against Floquet multipliers of the same motion", "[slow]") {
   // Whirling: all points agree but such as lie between a torus point of the one and of the other, 2.2e-4 apart: there the exponents' frequency is
   // 0.05 omega, and the slow flow is of first order in it.
   const SlowFlow flow(stay_over_omega(), Ansatz::complete(2, 8), whirling);
