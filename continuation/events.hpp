@@ -5,9 +5,12 @@
 /// (its determinant changes sign and no fold explains it), Hopf points (two unstable directions more or fewer); of periodic motions period doublings
 /// (the parity of the multipliers below -1) and torus points (two unstable multipliers more or fewer), per group of directions. Each is located by
 /// Newton on its own system (augmented.hpp, period_doubling.hpp, torus.hpp) from a bracket; the signature just before and just behind it is computed,
-/// and what remains on either side is explained in turn. What cannot be located is returned as `unresolved` with its bracket. Where nothing changed
-/// but an eigenvalue or the turning of the parameter comes closer to zero than it moved, the step is looked at more closely: two events that cancel
-/// are found too.
+/// and what remains on either side is explained in turn. What cannot be located is returned as `unresolved` with its bracket.
+///
+/// Two events that cancel change no signature. They are announced by functions that come closer to zero than they move: the slope of the parameter
+/// along the curve, and the growth rates in order of size (growth_rates.hpp), three on either side of zero. Such a step is halved, up to
+/// `suspicion_depth` times. What an event leaves of its step, and the steps beside it, are looked at once half way, and halved only where something
+/// turns near zero or the event's own function does not go on as it left.
 
 #include <algorithm>
 #include <functional>
