@@ -22,7 +22,7 @@ double apart(const std::complex<double>* z, const Eigen::VectorXcd& w) {
 
 }  // namespace
 
-TEST_CASE("eigenvalues of small matrices by their factors follow those of the general solver") {
+TEST_CASE("eigenvalues of small matrices by their factors follow those of the general solver", "[slow]") {
   std::mt19937 random(3);
   std::normal_distribution<double> normal;
   for (const int m : {3, 4}) {

@@ -510,7 +510,7 @@ auto hump(double c, double half) {
 
 }  // namespace
 
-TEST_CASE("two events that cancel within one step are both found", "[published]") {
+TEST_CASE("two events that cancel within one step are both found", "[published][slow]") {
   // Steps are 0.04 of the range here; the centres move through all positions within a step.
   const double half = GENERATE(5e-4, 5e-5, 5e-6, 5e-7, 1.5e-7);
   for (int i = 0; i < 100; ++i) {

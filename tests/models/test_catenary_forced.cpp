@@ -94,7 +94,7 @@ TEST_CASE("catenary forced: Table C-3 corrected", "[published]") {
   }
 }
 
-TEST_CASE("catenary forced: agrees with the core system integrated, elastic and damped, each end and direction") {
+TEST_CASE("catenary forced: agrees with the core system integrated, elastic and damped, each end and direction", "[slow]") {
   for (const double kappa : {0.0, 1e-6, 4e-3})
     for (const double w : {0.0, 0.7, 3.3, 9.0}) {
       const Geometry g = unit_geometry(0.9, 0.6);
