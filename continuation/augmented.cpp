@@ -268,6 +268,12 @@ void BranchPointSystem::fill_jacobian(In, MatrixOut j) const {
   }
 }
 
+bool BranchPointSystem::persists(In y) const {
+  spread(y);
+  base_.jacobian(u_, j_);
+  return std::abs(y[base_.size() + 1]) <= 1e-8 * (1.0 + j_.norm());
+}
+
 Matrix BranchPointSystem::null_space(In y) const {
   spread(y);
   base_.jacobian(u_, j_);

@@ -90,9 +90,9 @@ class BranchPointSystem : public AugmentedSystem {
   BranchPointSystem(const Problem& base, In u);
   Vector unknowns(In u) const override;
   void update_borders(In y) override;
-  bool persists(In y) const { return std::abs(y[base_.size() + 1]) < 1e-8; }  ///< beta is zero: two curves cross and do not just come near
-  Matrix null_space(In y) const;                                              ///< two columns spanning ker [r_x r_p1], size n + 1
-  Vector left_null_vector(In y) const;                                        ///< size n, unit length
+  bool persists(In y) const;            ///< beta is zero, up to rounding: two curves cross and do not just come near
+  Matrix null_space(In y) const;        ///< two columns spanning ker [r_x r_p1], size n + 1
+  Vector left_null_vector(In y) const;  ///< size n, unit length
 
  private:
   void fill_residual(In y, Out r) const override;

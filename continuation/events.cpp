@@ -50,6 +50,8 @@ class Parabola {
     slope_ = before + curvature_ * (s1 - s0);
     none_ = std::isinf(f0) && std::isinf(f1) && std::isinf(f2);
   }
+  double turn() const { return s_ - 0.5 * slope_ / curvature_; }
+  double at(double s) const { return f_ + (s - s_) * (slope_ + curvature_ * (s - s_)); }
   /// Nearer to zero on the way than it moves, or to zero.
   bool comes_near_zero(double from, double to) const {
     if (none_) return false;  // there is no such function
@@ -58,8 +60,7 @@ class Parabola {
   }
   /// That, where it turns on the way.
   bool turns_near_zero(double from, double to) const {
-    const double turn = s_ - 0.5 * slope_ / curvature_;
-    return turn > from && turn < to && comes_near_zero(from, to) && std::abs(at(turn)) < std::min(std::abs(at(from)), std::abs(at(to)));
+    return turn() > from && turn() < to && comes_near_zero(from, to) && std::abs(at(turn())) < std::min(std::abs(at(from)), std::abs(at(to)));
   }
   /// Of one sign, and nowhere three times what it is at zero or less than a third.
   bool keeps_size(double from, double to) const {
@@ -69,9 +70,8 @@ class Parabola {
   }
 
  private:
-  double at(double s) const { return f_ + (s - s_) * (slope_ + curvature_ * (s - s_)); }
   std::pair<double, double> range(double from, double to) const {
-    const double turn = s_ - 0.5 * slope_ / curvature_, a = at(from), b = at(to), c = turn > from && turn < to ? at(turn) : a;
+    const double a = at(from), b = at(to), c = turn() > from && turn() < to ? at(turn()) : a;
     return {std::min({a, b, c}), std::max({a, b, c})};
   }
   double s_, f_, slope_, curvature_;  // at s_
@@ -233,9 +233,8 @@ void EventFinder::look_at_extrema(const Sample& a, const Sample& middle, const S
   all_next_to_zero(a, [&](const TestFunction& t) {
     Knot l{0.0, value(a, t)}, m{0.5, value(middle, t)}, r{1.0, value(b, t)};
     for (int i = 0; i < 8; ++i) {
-      const double from = (m.value - l.value) / (m.sigma - l.sigma), to = (r.value - m.value) / (r.sigma - m.sigma);
-      const double curvature = (to - from) / (r.sigma - l.sigma), slope = from + curvature * (m.sigma - l.sigma);  // at m
-      const double sigma = m.sigma - 0.5 * slope / curvature, extremum = m.value - 0.25 * slope * slope / curvature;
+      const Parabola parabola(l.sigma, l.value, m.sigma, m.value, r.sigma, r.value);
+      const double sigma = parabola.turn(), extremum = parabola.at(sigma);
       if (!(sigma > l.sigma && sigma < r.sigma) || std::abs(sigma - m.sigma) < 1e-9) break;
       if (i > 0 && extremum * m.value > 0.0 && std::abs(extremum) > 0.5 * std::abs(m.value)) break;  // settled, away from zero
       Sample at;

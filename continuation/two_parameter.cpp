@@ -176,10 +176,8 @@ bool Follower::past_strong_resonance(In y) const {
 }
 
 bool Follower::dissolved(In y) const {
-  if (!dynamic_cast<const BranchPointSystem*>(system_.get())) return false;
-  Matrix j(f_.size(), f_.size() + 2);
-  f_.jacobian(base(y), j);
-  return std::abs(y[f_.size() + 1]) > 1e-8 * (1.0 + j.norm());
+  const auto* point = dynamic_cast<const BranchPointSystem*>(system_.get());
+  return point && !point->persists(y);
 }
 
 bool Follower::mirrored(const Vector& a, const Vector& b) const {
