@@ -6,7 +6,9 @@
 #include <Eigen/Core>
 #include <boost/version.hpp>
 #include <csignal>
+#include <cstdint>
 #include <cstdio>
+#include <ctime>
 
 #include "core/kinsol.hpp"
 #include "studies/result_file.hpp"
@@ -16,8 +18,21 @@ namespace whirl::studies {
 std::atomic<bool> interrupted{false};
 
 namespace {
+std::atomic<std::int64_t> first_interrupt_ms{0};
+static_assert(std::atomic<std::int64_t>::is_always_lock_free);  // the handler may touch nothing else
+
+std::int64_t milliseconds_now() {
+  timespec now{};
+  clock_gettime(CLOCK_MONOTONIC, &now);
+  return std::int64_t(now.tv_sec) * 1000 + now.tv_nsec / 1000000;
+}
+
+// A second Ctrl-C does not wait. Two signals at once are one: `timeout -s INT` sends one to the program and one to its group.
 void on_interrupt(int) {
-  if (interrupted.exchange(true)) std::_Exit(130);  // a second Ctrl-C does not wait
+  const std::int64_t now = milliseconds_now();
+  std::int64_t first = 0;
+  if (!first_interrupt_ms.compare_exchange_strong(first, now) && now - first > 500) std::_Exit(130);
+  interrupted = true;
 }
 }  // namespace
 

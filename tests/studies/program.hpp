@@ -10,11 +10,14 @@
 #include <unistd.h>
 
 #include <atomic>
+#include <chrono>
+#include <csignal>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
 #include <string>
+#include <thread>
 
 namespace whirl::studies::tests {
 
@@ -52,6 +55,31 @@ inline Ran shell(const Folder& f, const std::string& command) {
 
 inline Ran program(const Folder& f, const std::string& arguments, const std::string& before = "") {
   return shell(f, before + WHIRL_PROGRAM + " " + arguments);
+}
+
+/// The program with Ctrl-C pressed `wait` after it has printed `text` (two minutes at most for that), as two signals at once,
+/// which is how `timeout` presses it.
+inline Ran interrupted_program(const Folder& f, const std::string& arguments, const std::string& text, std::chrono::milliseconds wait) {
+  const auto out = f / "out.txt", err = f / "err.txt";
+  const std::string command =
+      "cd '" + f.path.string() + "' && exec " + WHIRL_PROGRAM + " " + arguments + " >'" + out.string() + "' 2>'" + err.string() + "'";
+  const pid_t child = ::fork();
+  if (child == 0) {
+    ::execl("/bin/sh", "sh", "-c", command.c_str(), nullptr);
+    ::_exit(127);
+  }
+  int code = 0;
+  const auto pause = [](std::chrono::milliseconds t) { std::this_thread::sleep_for(t); };
+  for (int i = 0; i < 12000 && slurp(err).find(text) == std::string::npos; ++i) {
+    if (::waitpid(child, &code, WNOHANG) == child) return {WEXITSTATUS(code), slurp(out), slurp(err)};
+    pause(std::chrono::milliseconds(10));
+  }
+  pause(wait);
+  ::kill(child, SIGINT);
+  pause(std::chrono::milliseconds(2));
+  ::kill(child, SIGINT);
+  ::waitpid(child, &code, 0);
+  return {WIFEXITED(code) ? WEXITSTATUS(code) : 128 + WTERMSIG(code), slurp(out), slurp(err)};
 }
 
 }  // namespace whirl::studies::tests

@@ -157,8 +157,8 @@ TEST_CASE("a truncated result file is refused") {
 
 TEST_CASE("Ctrl-C keeps the results so far and ends with status 130") {
   const Folder f;
-  const Ran r = shell(f, "timeout --preserve-status -s INT 2 " + std::string(WHIRL_PROGRAM) + " run " + oresund +
-                             " --set verification.max_periods=90000000 --set verification.tolerance=1e-15 -o o.h5");
+  const std::string endless = " --set verification.max_periods=90000000 --set verification.tolerance=1e-15 -o o.h5";
+  const Ran r = interrupted_program(f, "run " + oresund + endless, "W1      HB", std::chrono::milliseconds(200));
   INFO(r.err);
   CHECK(r.status == 130);
   ResultReader file(f.path / "o.h5");
