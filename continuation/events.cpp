@@ -1,15 +1,11 @@
 #include "continuation/events.hpp"
 
 #include <Eigen/Eigenvalues>
-#include <Eigen/SVD>
 #include <algorithm>
-#include <memory>
 
-#include "continuation/augmented.hpp"
-#include "continuation/period_doubling.hpp"
+#include "continuation/parabola.hpp"
+#include "continuation/special_points.hpp"
 #include "continuation/switching.hpp"
-#include "continuation/torus.hpp"
-#include "core/newton.hpp"
 
 namespace whirl::continuation {
 namespace {
@@ -41,49 +37,10 @@ bool may_touch(double from, double to, double past) {
   return !(std::min(std::abs(from), std::abs(to)) >= moved) && from * to > 0.0;
 }
 
-// Through three points.
-class Parabola {
- public:
-  Parabola(double s0, double f0, double s1, double f1, double s2, double f2) : s_(s1), f_(f1) {
-    const double before = (f1 - f0) / (s1 - s0), behind = (f2 - f1) / (s2 - s1);
-    curvature_ = (behind - before) / (s2 - s0);
-    slope_ = before + curvature_ * (s1 - s0);
-    none_ = std::isinf(f0) && std::isinf(f1) && std::isinf(f2);
-  }
-  double turn() const { return s_ - 0.5 * slope_ / curvature_; }
-  double at(double s) const { return f_ + (s - s_) * (slope_ + curvature_ * (s - s_)); }
-  /// Nearer to zero on the way than it moves, or to zero.
-  bool comes_near_zero(double from, double to) const {
-    if (none_) return false;  // there is no such function
-    const auto [low, high] = range(from, to);
-    return !(low > high - low || -high > high - low);
-  }
-  /// That, where it turns on the way.
-  bool turns_near_zero(double from, double to) const {
-    return turn() > from && turn() < to && comes_near_zero(from, to) && std::abs(at(turn())) < std::min(std::abs(at(from)), std::abs(at(to)));
-  }
-  /// Of one sign, and nowhere three times what it is at zero or less than a third.
-  bool keeps_size(double from, double to) const {
-    const auto [low, high] = range(from, to);
-    const double here = at(0.0);
-    return std::min(low / here, high / here) > 0.3 && std::max(low / here, high / here) < 3.0;
-  }
-
- private:
-  std::pair<double, double> range(double from, double to) const {
-    const double a = at(from), b = at(to), c = turn() > from && turn() < to ? at(turn()) : a;
-    return {std::min({a, b, c}), std::max({a, b, c})};
-  }
-  double s_, f_, slope_, curvature_;  // at s_
-  bool none_;
-};
-
-Indices block_or_empty(const Blocks& blocks, int k) { return blocks.indices[static_cast<std::size_t>(k)]; }
-
 }  // namespace
 
-std::vector<EventFinder::Kind> EventFinder::changes(const Signature& a, const Signature& b) const {
-  std::vector<Kind> kinds;
+std::vector<EventKind> EventFinder::changes(const Signature& a, const Signature& b) const {
+  std::vector<EventKind> kinds;
   const bool fold = a.forward != b.forward;
   if (fold) kinds.push_back({EventType::fold, 0});
   for (int k = 0; k < static_cast<int>(curve_.blocks().indices.size()); ++k) {
@@ -98,7 +55,7 @@ std::vector<EventFinder::Kind> EventFinder::changes(const Signature& a, const Si
 }
 
 // Multipliers of each group that left through -1, or in pairs. Real ones may meet and leave the axis, so only the parity of their number tells.
-void EventFinder::multiplier_changes(const Signature& a, const Signature& b, std::vector<Kind>& kinds) const {
+void EventFinder::multiplier_changes(const Signature& a, const Signature& b, std::vector<EventKind>& kinds) const {
   for (int g = 0; g < curve_.parts(); ++g) {
     const auto slot = static_cast<std::size_t>(g);
     const bool flipped = (b.flips[slot] - a.flips[slot]) % 2 != 0, left = (b.above[slot] - a.above[slot]) % 2 != 0;
@@ -198,7 +155,7 @@ double EventFinder::secant(const Sample& a, const Sample& b, const TestFunction&
   return part > 0.0 && part < 1.0 ? part : 0.5;
 }
 
-EventFinder::TestFunction EventFinder::crossing(const Kind& kind, const Sample& a, const Sample& b) const {
+EventFinder::TestFunction EventFinder::crossing(const EventKind& kind, const Sample& a, const Sample& b) const {
   if (kind.type == EventType::fold) return {-1, 0};
   const auto slot = static_cast<std::size_t>(kind.block);
   return {kind.block, std::min(a.rates[slot].positive(), b.rates[slot].positive()) + 1};
@@ -257,14 +214,14 @@ void EventFinder::look_at_extrema(const Sample& a, const Sample& middle, const S
 }
 
 // Newton from the secant guess, else from ever narrower brackets.
-bool EventFinder::locate(const Kind& kind, const Sample& a, const Sample& b, SpecialPoint& out) {
+bool EventFinder::locate(const EventKind& kind, const Sample& a, const Sample& b, SpecialPoint& out) {
   const auto inside = [&](const SpecialPoint& p) {
     const double s = fraction(curve_, a, b, p.u), chord = curve_.length(b.u - a.u);
     return s > -1e-6 && s < 1.0 + 1e-6 && curve_.length(p.u - (a.u + s * (b.u - a.u))) < 0.5 * chord + 1e-12;
   };
   const auto has = [&](const Signature& s, const Signature& t) {
     const auto list = changes(s, t);
-    return std::any_of(list.begin(), list.end(), [&](const Kind& k) { return k.type == kind.type && k.block == kind.block; });
+    return std::any_of(list.begin(), list.end(), [&](const EventKind& k) { return k.type == kind.type && k.block == kind.block; });
   };
   const bool has_system = curve_.problem().derivatives() >= 2;
   Sample middle;
@@ -272,7 +229,7 @@ bool EventFinder::locate(const Kind& kind, const Sample& a, const Sample& b, Spe
     const double sigma = secant(a, b, crossing(kind, a, b));
     const bool ready = kind.type != EventType::hopf || curve_.peek(a, b, sigma, middle);
     if (kind.type != EventType::hopf) curve_.guess(a, b, sigma, middle);
-    if (ready && solve(kind, middle, out) && inside(out)) return true;
+    if (ready && special_point_near(curve_, kind, middle, out) && inside(out)) return true;
   }
   Sample lo = a, hi = b;
   double from = 0.0, to = 1.0;
@@ -283,7 +240,7 @@ bool EventFinder::locate(const Kind& kind, const Sample& a, const Sample& b, Spe
       sigma = from + (part < 0.5 ? 1.1 : 0.9) * (sigma - from);
       if (!between(a, b, sigma, middle)) return false;
     }
-    if (has_system && (i < 3 || i % 6 == 0) && solve(kind, middle, out) && inside(out)) return true;
+    if (has_system && (i < 3 || i % 6 == 0) && special_point_near(curve_, kind, middle, out) && inside(out)) return true;
     if (has(lo.signature, middle.signature)) {
       hi = middle;
       to = sigma;
@@ -306,88 +263,8 @@ bool EventFinder::locate(const Kind& kind, const Sample& a, const Sample& b, Spe
   return true;
 }
 
-bool EventFinder::solve(const Kind& kind, const Sample& near, SpecialPoint& out, double frequency) {
-  const Problem& f = curve_.problem();
-  if (f.derivatives() < 2) return false;
-  if (kind.type == EventType::period_doubling) return solve_period_doubling(kind.block, near, out);
-  const Blocks& blocks = curve_.blocks();
-  const bool of_group = kind.type == EventType::torus;  // then kind.block is no symmetry block
-  const Indices state = block_or_empty(blocks, 0), block = block_or_empty(blocks, of_group ? 0 : kind.block);
-  std::unique_ptr<AugmentedSystem> system;
-  switch (kind.type) {
-    case EventType::fold:
-      system = std::make_unique<SingularSystem>(f, state, state, near.u);
-      break;
-    case EventType::branch_point:
-      if (kind.block > 0) system = std::make_unique<SingularSystem>(f, state, block, near.u);
-      else if (blocks.indices.size() == 1) system = std::make_unique<BranchPointSystem>(f, near.u);
-      else return false;
-      break;
-    case EventType::hopf:
-      if (!(frequency > 0.0) && !(near.kappa[static_cast<std::size_t>(kind.block)] > 0.0)) return false;  // no pair here
-      system = std::make_unique<HopfSystem>(f, state, block, near.u,
-                                            frequency > 0.0 ? frequency * frequency : near.kappa[static_cast<std::size_t>(kind.block)]);
-      break;
-    case EventType::torus:
-      system = torus_system(kind.block, near);
-      if (!system) return false;
-      break;
-    case EventType::period_doubling:
-    case EventType::end:
-    case EventType::gave_up:
-    case EventType::user_value:
-    case EventType::peak:
-    case EventType::unresolved:
-      return false;
-  }
-  const Vector start = system->unknowns(near.u);
-  if (!start.allFinite()) return false;
-  NewtonResult r = newton(*system, start, {.tolerance = 1e-13, .max_iterations = 12});
-  if (!r.settled()) return false;
-  if (kind.type == EventType::hopf && !(static_cast<HopfSystem&>(*system).kappa(r.x) > 0.0)) return false;
-  if (kind.type == EventType::torus && !(static_cast<TorusSystem&>(*system).kappa(r.x) > 0.0)) return false;
-  if (auto* point = dynamic_cast<BranchPointSystem*>(system.get()); point && !point->persists(r.x)) return false;
-  out = {};
-  out.type = kind.type;
-  out.block = kind.block;
-  out.u = system->base_point(r.x);
-  out.tangent = near.tangent;
-  out.residual = r.residual;
-  out.subtype = kind.type == EventType::branch_point ? blocks.subtype[static_cast<std::size_t>(kind.block)] : "";
-  if (auto* singular = dynamic_cast<SingularSystem*>(system.get())) out.null_vector = singular->null_vector(r.x);
-  if (kind.type == EventType::branch_point && kind.block == 0) (void)departures(f, out);  // tells pitchfork from transcritical
-  if (kind.type == EventType::hopf) out.frequency = std::sqrt(static_cast<HopfSystem&>(*system).kappa(r.x));
-  if (kind.type == EventType::torus) {
-    const auto& torus = static_cast<TorusSystem&>(*system);
-    const Eigen::VectorXcd v = torus.null_vector(r.x);
-    out.frequency = torus.kappa(r.x);
-    out.null_vector = v.real();
-    out.null_vector_im = v.imag();
-  }
-  return true;
-}
-
-bool EventFinder::solve_period_doubling(int group, const Sample& near, SpecialPoint& out) {
-  const auto at = period_doubling_near(*curve_.orbit(), near.u, group);
-  if (!at) return false;
-  out = {};
-  out.type = EventType::period_doubling;
-  out.block = group;
-  out.u = curve_.orbit()->from_doubled(at->u);
-  out.tangent = near.tangent;
-  out.residual = at->residual;
-  return true;
-}
-
-std::unique_ptr<AugmentedSystem> EventFinder::torus_system(int group, const Sample& near) const {
-  const OrbitProblem& orbit = *curve_.orbit();
-  const double kappa = torus_frequency(orbit, near.u, group);
-  if (!(kappa > 0.0)) return nullptr;
-  return std::make_unique<TorusSystem>(orbit, curve_.blocks().indices[0], unknowns_of_group(orbit, near.u, group), near.u, kappa);
-}
-
 // The event splits the step: signatures just before and behind it must show it, and what remains on either side is explained in turn.
-bool EventFinder::accept(const Kind& kind, const Sample& a, const Sample& b, SpecialPoint& point, int depth) {
+bool EventFinder::accept(const EventKind& kind, const Sample& a, const Sample& b, SpecialPoint& point, int depth) {
   for (const auto& known : found_)
     if (known.type == point.type && known.block == point.block && curve_.length(known.u - point.u) < 1e-9) return false;
   const Vector chord = (b.u - a.u).normalized();
@@ -400,7 +277,7 @@ bool EventFinder::accept(const Kind& kind, const Sample& a, const Sample& b, Spe
     if (!curve_.sample(point.u + offset, chord, right)) continue;
     const int pairs_right = unstable_pairs(curve_.eigenvalues());
     const auto shown = changes(left.signature, right.signature);
-    const auto same = [&](const Kind& k) { return k.type == kind.type && k.block == kind.block; };
+    const auto same = [&](const EventKind& k) { return k.type == kind.type && k.block == kind.block; };
     if (std::none_of(shown.begin(), shown.end(), same)) continue;
     point.unstable_before = left.signature.total_unstable();
     point.unstable_after = right.signature.total_unstable();
@@ -467,16 +344,16 @@ bool EventFinder::quiet_rest(const Sample& near, const Sample& far, double offse
 }
 
 // Other kinds at the same place: each has its own regular system.
-void EventFinder::find_coincident(const Kind& kind, const SpecialPoint& point, const Sample& left, const Sample& right, double delta, int pairs_left,
-                                  int pairs_right) {
+void EventFinder::find_coincident(const EventKind& kind, const SpecialPoint& point, const Sample& left, const Sample& right, double delta,
+                                  int pairs_left, int pairs_right) {
   const auto shown = changes(left.signature, right.signature);
-  const auto is = [](const Kind& k, EventType type) { return k.type == type; };
+  const auto is = [](const EventKind& k, EventType type) { return k.type == type; };
   const bool upright = turns_at_branch_point(shown, point);
   if (upright && is(kind, EventType::fold)) found_.pop_back();  // only the branch point itself is told
   for (const auto& other : shown) {
     SpecialPoint second;
     if ((other.type == kind.type && other.block == kind.block) || (upright && is(other, EventType::fold))) continue;
-    if (solve(other, left, second) && curve_.length(second.u - point.u) < 2.0 * delta) {
+    if (special_point_near(curve_, other, left, second) && curve_.length(second.u - point.u) < 2.0 * delta) {
       copy_sides(point, second);
       found_.push_back(second);
     } else {
@@ -487,8 +364,8 @@ void EventFinder::find_coincident(const Kind& kind, const SpecialPoint& point, c
   // A real eigenvalue through zero changes the count by one and so hides a pair that crosses within the same delta.
   SpecialPoint pair;
   if (!is(kind, EventType::hopf) && pairs_left != pairs_right &&
-      std::none_of(shown.begin(), shown.end(), [&](const Kind& k) { return is(k, EventType::hopf); }) &&
-      solve({EventType::hopf, kind.block}, left, pair) && curve_.length(pair.u - point.u) < 2.0 * delta) {
+      std::none_of(shown.begin(), shown.end(), [&](const EventKind& k) { return is(k, EventType::hopf); }) &&
+      special_point_near(curve_, {EventType::hopf, kind.block}, left, pair) && curve_.length(pair.u - point.u) < 2.0 * delta) {
     copy_sides(point, pair);
     found_.push_back(pair);
   }
@@ -496,11 +373,11 @@ void EventFinder::find_coincident(const Kind& kind, const SpecialPoint& point, c
 }
 
 // A branch that leaves a pitchfork upright turns there: the parameter has an extremum, but r_p lies in the range of r_x. That is no fold.
-bool EventFinder::turns_at_branch_point(const std::vector<Kind>& shown, const SpecialPoint& point) const {
+bool EventFinder::turns_at_branch_point(const std::vector<EventKind>& shown, const SpecialPoint& point) const {
   const auto has = [&](EventType type) {
-    return std::any_of(shown.begin(), shown.end(), [type](const Kind& k) { return k.type == type && k.block == 0; });
+    return std::any_of(shown.begin(), shown.end(), [type](const EventKind& k) { return k.type == type && k.block == 0; });
   };
-  return has(EventType::fold) && has(EventType::branch_point) && upright(point);
+  return has(EventType::fold) && has(EventType::branch_point) && turns_upright(curve_, point);
 }
 
 void EventFinder::drop_turns_at_branch_points(std::vector<SpecialPoint>& special) const {
@@ -509,30 +386,15 @@ void EventFinder::drop_turns_at_branch_points(std::vector<SpecialPoint>& special
   for (const auto& p : special)
     if (p.type == EventType::branch_point && p.block == 0 &&
         std::any_of(special.begin(), special.end(), [&](const auto& q) { return q.type == EventType::fold && curve_.length(p.u - q.u) < near; }) &&
-        upright(p))
+        turns_upright(curve_, p))
       turns.push_back(p.u);
   std::erase_if(special, [&](const SpecialPoint& q) {
     return q.type == EventType::fold && std::any_of(turns.begin(), turns.end(), [&](const Vector& u) { return curve_.length(u - q.u) < near; });
   });
 }
 
-bool EventFinder::upright(const SpecialPoint& point) const {
-  const Problem& f = curve_.problem();
-  Matrix j(f.size(), f.size() + f.parameters());
-  f.jacobian(point.u, j);
-  // Is r_p in the range of r_x, hence orthogonal to all its left null vectors?
-  const Indices& state = curve_.blocks().indices[0];
-  const Matrix a = j(state, state);
-  const Vector rp = j(state, f.size());
-  const Eigen::JacobiSVD<Matrix> svd(a, Eigen::ComputeFullU);
-  const double small = 1e-6 * j.norm();
-  for (Eigen::Index k = 0; k < a.rows(); ++k)
-    if (svd.singularValues()[k] <= small && std::abs(svd.matrixU().col(k).dot(rp)) > small) return false;
-  return true;
-}
-
 // More than one pair crossed within delta: each has its own frequency. Pairs that share even that are told as unresolved.
-void EventFinder::find_further_pairs(const Kind& kind, const SpecialPoint& point, const Sample& left, const Sample& right, double delta) {
+void EventFinder::find_further_pairs(const EventKind& kind, const SpecialPoint& point, const Sample& left, const Sample& right, double delta) {
   const auto slot = static_cast<std::size_t>(kind.block);
   const bool turned = left.signature.negative[slot] != right.signature.negative[slot];
   int missing = (std::abs(right.signature.unstable[slot] - left.signature.unstable[slot]) - (turned ? 1 : 0)) / 2 - 1;
@@ -545,7 +407,7 @@ void EventFinder::find_further_pairs(const Kind& kind, const SpecialPoint& point
   for (const auto& value : z) {
     SpecialPoint pair;
     if (missing == 0 || !(value.imag() > 0.0)) continue;
-    if (!solve(kind, left, pair, value.imag()) || curve_.length(pair.u - point.u) >= 2.0 * delta) continue;
+    if (!special_point_near(curve_, kind, left, pair, value.imag()) || curve_.length(pair.u - point.u) >= 2.0 * delta) continue;
     const bool known = std::any_of(found_.begin(), found_.end(), [&](const SpecialPoint& p) {
       return p.type == pair.type && p.block == pair.block && std::abs(p.frequency - pair.frequency) < 1e-6 * p.frequency &&
              curve_.length(p.u - pair.u) < 2.0 * delta;
@@ -556,61 +418,6 @@ void EventFinder::find_further_pairs(const Kind& kind, const SpecialPoint& point
     --missing;
   }
   if (missing > 0) report_unresolved(left, right);
-}
-
-bool EventFinder::branch_point_at(const Sample& near, SpecialPoint& out) {
-  if (curve_.orbit() || !solve({EventType::branch_point, 0}, near, out) || curve_.length(out.u - near.u) > 1e-6) return false;
-  const double p = out.u[out.u.size() - 1], q = near.u[near.u.size() - 1];
-  out.bracket[0] = std::min(p, q);
-  out.bracket[1] = std::max(p, q);
-  out.unstable_before = out.unstable_after = near.signature.total_unstable();
-  return true;
-}
-
-bool EventFinder::mirror_crossing(const Sample& a, const Sample& b, int r, SpecialPoint& out) {
-  const Problem& f = curve_.problem();
-  const Vector& signs = f.reflections()[static_cast<std::size_t>(r)].signs;
-  double product = 0.0;
-  for (int i = 0; i < f.size(); ++i)
-    if (signs[i] < 0.0) product += a.u[i] * b.u[i];
-  if (!(product < 0.0)) return false;
-  const Indices odd = odd_coordinates(f, r);
-  // Where the odd part passes zero on the chord, made exactly symmetric.
-  double na = 0.0, nb = 0.0;
-  for (int i : odd) {
-    na += a.u[i] * a.u[i];
-    nb += b.u[i] * b.u[i];
-  }
-  const double sigma = std::sqrt(na) / (std::sqrt(na) + std::sqrt(nb));
-  Vector guess = a.u + sigma * (b.u - a.u);
-  for (int i : odd) guess[i] = 0.0;
-  std::vector<int> active = curve_.blocks().active;
-  active.push_back(r);
-  std::sort(active.begin(), active.end());
-  const Blocks blocks = make_blocks(f, active);
-  for (std::size_t k = 1; k < blocks.indices.size(); ++k) {
-    if (blocks.indices[k].empty() || f.reflections()[static_cast<std::size_t>(r)].signs[blocks.indices[k].front()] > 0.0) continue;
-    SingularSystem system(f, blocks.indices[0], blocks.indices[k], guess);
-    const NewtonResult result = newton(system, system.unknowns(guess), {.tolerance = 1e-13, .max_iterations = 15});
-    if (!result.settled()) continue;
-    const Vector u = system.base_point(result.x);
-    const double chord = curve_.length(b.u - a.u);
-    if (curve_.length(u - guess) > chord) continue;
-    out = {};
-    out.type = EventType::branch_point;
-    out.subtype = blocks.subtype[k];
-    out.block = static_cast<int>(k);
-    out.u = u;
-    for (int i : odd) out.u[i] = 0.0;
-    out.tangent = (b.u - a.u) / chord;
-    out.null_vector = system.null_vector(result.x);
-    out.residual = result.residual;
-    out.unstable_before = out.unstable_after = a.signature.total_unstable();
-    out.bracket[0] = std::min({u[f.size()], a.u[f.size()], b.u[f.size()]});
-    out.bracket[1] = std::max({u[f.size()], a.u[f.size()], b.u[f.size()]});
-    return true;
-  }
-  return false;
 }
 
 }  // namespace whirl::continuation

@@ -4,7 +4,7 @@
 /// A change of signature between two points names what must lie between: a fold (the parameter turns), a branch point in a block
 /// (its determinant changes sign and no fold explains it), Hopf points (two unstable directions more or fewer); of periodic motions period doublings
 /// (the parity of the multipliers below -1) and torus points (two unstable multipliers more or fewer), per group of directions. Each is located by
-/// Newton on its own system (augmented.hpp, period_doubling.hpp, torus.hpp) from a bracket; the signature just before and just behind it is computed,
+/// Newton on its own system (special_points.hpp) from a bracket; the signature just before and just behind it is computed,
 /// and what remains on either side is explained in turn. What cannot be located is returned as `unresolved` with its bracket.
 ///
 /// Two events that cancel change no signature. They are announced by functions that come closer to zero than they move: the slope of the parameter
@@ -15,9 +15,9 @@
 #include <algorithm>
 #include <functional>
 
-#include "continuation/augmented.hpp"
 #include "continuation/branch.hpp"
 #include "continuation/curve.hpp"
+#include "continuation/special_points.hpp"
 
 namespace whirl::continuation {
 
@@ -38,22 +38,12 @@ class EventFinder {
   std::vector<SpecialPoint>& find(const Sample& before, const Sample& a, const Sample& b, bool last = false);
   bool turns_at(const Sample& before, const Sample& a, const Sample& b) const;
 
-  /// A branch point next to `near`, where a walk can go no further because its range ends on it.
-  bool branch_point_at(const Sample& near, SpecialPoint& out);
-
   /// Drops the folds that the turn of a branch upright at its branch point looks like, where rounding had both found apart.
   void drop_turns_at_branch_points(std::vector<SpecialPoint>& special) const;
 
-  /// The branch point on the symmetric branch that lies between a and b if reflection `r` of the problem changes the sign of a state's odd part.
-  bool mirror_crossing(const Sample& a, const Sample& b, int r, SpecialPoint& out);
-
  private:
-  struct Kind {
-    EventType type;
-    int block;  // of a period doubling or torus point: the group of multipliers
-  };
-  std::vector<Kind> changes(const Signature& a, const Signature& b) const;
-  void multiplier_changes(const Signature& a, const Signature& b, std::vector<Kind>& kinds) const;
+  std::vector<EventKind> changes(const Signature& a, const Signature& b) const;
+  void multiplier_changes(const Signature& a, const Signature& b, std::vector<EventKind>& kinds) const;
   bool changed(const Signature& a, const Signature& b) const { return a.unstable != b.unstable || !changes(a, b).empty(); }
   void explain(const Sample& a, const Sample& b, int depth);
   /// What is left of a step beside an event: searched unless everything goes its way quietly.
@@ -83,23 +73,19 @@ class EventFinder {
     return true;
   }
   /// The one that passes zero at an event between a and b.
-  TestFunction crossing(const Kind& kind, const Sample& a, const Sample& b) const;
+  TestFunction crossing(const EventKind& kind, const Sample& a, const Sample& b) const;
   /// `anyway`: at least half way, whatever the ends say.
   void look_closer(const Sample& before, const Sample& a, const Sample& b, int depth, bool anyway = false);
   int beside() const { return std::max(0, options_.suspicion_depth - 4); }  // depth at which what lies beside an event is looked at
   void look_at_extrema(const Sample& a, const Sample& middle, const Sample& b, int depth);
-  bool locate(const Kind& kind, const Sample& a, const Sample& b, SpecialPoint& out);
-  bool solve(const Kind& kind, const Sample& near, SpecialPoint& out, double frequency = 0.0);  // frequency: of the pair meant, 0: the nearest
-  bool accept(const Kind& kind, const Sample& a, const Sample& b, SpecialPoint& found, int depth);
-  void find_coincident(const Kind& kind, const SpecialPoint& point, const Sample& left, const Sample& right, double delta, int pairs_left,
+  bool locate(const EventKind& kind, const Sample& a, const Sample& b, SpecialPoint& out);
+  bool accept(const EventKind& kind, const Sample& a, const Sample& b, SpecialPoint& found, int depth);
+  void find_coincident(const EventKind& kind, const SpecialPoint& point, const Sample& left, const Sample& right, double delta, int pairs_left,
                        int pairs_right);
-  bool turns_at_branch_point(const std::vector<Kind>& shown, const SpecialPoint& point) const;
-  bool upright(const SpecialPoint& point) const;
-  void find_further_pairs(const Kind& kind, const SpecialPoint& point, const Sample& left, const Sample& right, double delta);
+  bool turns_at_branch_point(const std::vector<EventKind>& shown, const SpecialPoint& point) const;
+  void find_further_pairs(const EventKind& kind, const SpecialPoint& point, const Sample& left, const Sample& right, double delta);
   bool locate_multiple(const Sample& a, const Sample& b);
   void report_unresolved(const Sample& a, const Sample& b);
-  bool solve_period_doubling(int group, const Sample& near, SpecialPoint& out);
-  std::unique_ptr<AugmentedSystem> torus_system(int group, const Sample& near) const;
 
   bool between(const Sample& a, const Sample& b, double sigma, Sample& out);
 

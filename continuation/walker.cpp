@@ -286,7 +286,7 @@ void Walker::shorten_step() {
   const bool at_end = s.now->tangent[n] > 0.0 ? p > options_.upper - near : p < options_.lower + near;
   s.stop = at_end ? StopReason::parameter_bound : StopReason::min_step;
   SpecialPoint last;
-  if (!at_end || !options_.locate_events || !s.has_signature || !s.finder.branch_point_at(*s.now, last)) return;
+  if (!at_end || !options_.locate_events || !s.has_signature || !branch_point_at(s.curve, *s.now, last)) return;
   last.arclength = s.arclength + s.curve.length(last.u - s.now->u);
   s.branch.special.push_back(std::move(last));
 }
@@ -301,7 +301,7 @@ bool Walker::locate_events() {
   State& s = *s_;
   if (!options_.locate_events || !s.has_signature) return true;
   for (const int r : s.broken) {
-    if (!s.finder.mirror_crossing(*s.now, *s.next, r, s.crossing)) continue;
+    if (!mirror_crossing(s.curve, *s.now, *s.next, r, s.crossing)) continue;
     // Stop on the branch point; what lies between is still looked at. Not nearer than 1e-3 of the step: the critical eigenvalue and the
     // slope of the parameter vanish with the square of the distance.
     const Vector chord = s.next->u - s.now->u;
