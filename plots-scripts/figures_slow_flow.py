@@ -48,12 +48,11 @@ class Motion:
     branch: str       # of the nearest stable averaged motion of this kind, or ""
     amplitudes: dict
     series: object
+    mirrored: list    # coordinates whose change of sign maps motions to motions: out of plane
 
     def words(self):
-        moving = [np.max(np.abs(self.series.column(q))) for q in coordinates(self.series)]
-        shape = ""
-        if len(moving) == 2:
-            shape = "coupled, " if moving[0] > MOVES * moving[1] else "in plane, "
+        out, rest = (max((peak(self.series, q) for q in qs), default=0.0) for qs in planes(self))
+        shape = "" if not self.mirrored else "coupled, " if out > MOVES * rest else "in plane, "
         return shape + ((f"{self.multiple}T" if self.multiple > 1 else "T") if self.kind == "periodic" else self.kind)
 
     def title(self, i):
@@ -64,12 +63,38 @@ def coordinates(series):
     return [q for q in series.columns if q != "t"]
 
 
+def mirrored_in(result):
+    """Coordinates out of plane; q1 in a file that does not tell."""
+    names = str(result.group("study").attributes.get("mirrored", "q1"))
+    return [q for q in names.split(", ") if q]
+
+
+def planes(motion):
+    """Coordinates out of plane, and the others."""
+    return motion.mirrored, [q for q in coordinates(motion.series) if q not in motion.mirrored]
+
+
+def peak(series, q):
+    return np.max(np.abs(series.column(q)))
+
+
+def leading(tables):
+    """The two coordinates that move most in any of the tables, in the file's order; both of two."""
+    names = coordinates(tables[0])
+    most = sorted(names, key=lambda q: -max(peak(t, q) for t in tables))[:2]
+    return [q for q in names if q in most]
+
+
+def symbol(q):
+    return re.sub(r"^([a-z]+)(\d+)$", r"$\1_{\2}$", q)
+
+
 def harmonics(columns):
-    return [c for c in columns if re.fullmatch(r"q\d+_h[0-9.]+", c)]
+    return [c for c in columns if re.fullmatch(r"[a-z]+\d+_h[0-9.]+", c)]
 
 
 def motions(result):
-    table, found = result.group("verification/runs"), []
+    table, mirrored, found = result.group("verification/runs"), mirrored_in(result), []
     for row in range(table.rows()):
         series = result.group(f"verification/series/run{row + 1}")
         if not series or table.column("motion")[row] == "failed":
@@ -78,7 +103,7 @@ def motions(result):
         whole = np.array([np.linalg.norm(spectrum.column(q)) for q in coordinates(series)])
         amplitudes = {c: table.column(c)[row] for c in harmonics(table.columns)}
         m = Motion(row + 1, float(table.column("omega")[row]), str(table.column("motion")[row]), int(table.column("multiple")[row]),
-                   str(table.column("branch")[row]), amplitudes, series)
+                   str(table.column("branch")[row]), amplitudes, series, mirrored)
         numbers = np.append(whole, list(amplitudes.values()))
         if not any(m.omega == o.omega and np.max(np.abs(numbers - known)) < SAME * np.max(known) for o, known in found):
             found.append((m, numbers))
@@ -149,10 +174,8 @@ def response(result):
 
 
 def amplitude_symbol(column):
-    q, h = re.fullmatch(r"q(\d+)_h([0-9.]+)", column).groups()
-    if float(h) == 0:
-        return rf"$q_{q}$: mean"
-    return rf"$q_{q}$ at {fraction(float(h))}"
+    q, h = column.split("_h")
+    return f"{symbol(q)}: mean" if float(h) == 0 else f"{symbol(q)} at {fraction(float(h))}"
 
 
 def fraction(h):
@@ -189,29 +212,33 @@ def underlay(axes, branch, x, y):
 # --- orbits ----------------------------------------------------------------------------------------------------------------
 
 def orbits(result):
-    """Every settled coupled motion on the averaged coupled motions of its frequency, stable and unstable."""
+    """Every settled coupled motion on the averaged coupled motions of its frequency, stable and unstable, in the plane of the coordinates that
+    move most out of plane and in it."""
+    coupled = [m for m in motions(result) if m.words().startswith("coupled")]
+    if not coupled:
+        return None
+    plane = x, y = [max(qs, key=lambda q: max(peak(m.series, q) for m in coupled)) for qs in planes(coupled[0])]
     cells = []
-    for m in motions(result):
-        if coordinates(m.series)[:2] != ["q1", "q2"] or not m.words().startswith("coupled"):
-            continue
-        partners = [o for o in averaged(result, m.omega) if np.max(np.abs(o.column("q1"))) > MOVES * np.max(np.abs(o.column("q2")))]
+    for m in coupled:
+        partners = [o for o in averaged(result, m.omega) if peak(o, x) > MOVES * peak(o, y)]
         if partners:
             cells.append((m.title(len(cells)), partners, m.series))
     if not cells:
         return None
     columns = min(len(cells), 2)
     rows = -(-len(cells) // columns)
-    left, right, low, high = orbit_reach(cells)
+    left, right, low, high = orbit_reach(cells, plane)
     panel = (7.6 - 0.7) / columns
     page = Page(7.6, rows * (panel * (high - low) / (right - left) + 0.62) + 0.2, "Coupled orbits: averaged against integrated",
                 [study(result)], orbit_keys(cells))
     panels = page.subplots(rows, columns)
     for axes, (words, partners, series) in zip(panels.ravel(), cells):
-        draw_orbits(axes, partners, series)
+        draw_orbits(axes, partners, series, plane)
         axes.set_title(words, loc="left")
         axes.axis((left, right, low, high))
         axes.set_aspect("equal")
-    finish_sheet(panels, len(cells), r"$q_1$ [m], out of plane", r"$q_2$ [m], in plane")
+    sides = (", out of plane", ", in plane") if "support_motion.amplitude" in result.group("study").attributes else ("", "")
+    finish_sheet(panels, len(cells), *(label(symbol(q), coupled[0].series.units[q]) + side for q, side in zip(plane, sides)))
     return "orbits", page.finish()
 
 
@@ -229,7 +256,7 @@ def aligned(result, m):
         for shift in range(nu):
             values = {q: np.interp(np.mod(t + shift * period, nu * period), orbit.column("t"), orbit.column(q)) for q in integrated}
             for sign in (1, -1):
-                flipped = {q: sign * v if q == "q1" else v for q, v in values.items()}
+                flipped = {q: sign * v if q in m.mirrored else v for q, v in values.items()}
                 distance = sum(np.sum((flipped[q] - integrated[q]) ** 2) for q in integrated)
                 if best is None or distance < best[0]:
                     best = (distance, flipped)
@@ -251,21 +278,22 @@ def time(result):
     if not chosen:
         return None
     rows, columns = grid(len(chosen))
-    keys = [line_key("$q_1$ integrated", color=VERMILLION, linewidth=1.3), line_key("$q_2$ integrated", color=BLUE, linewidth=1.3),
+    names = leading([m.series for m in chosen])
+    keys = [line_key(f"{symbol(q)} integrated", color=colour, linewidth=1.3) for q, colour in zip(names, (VERMILLION, BLUE))] + [
             line_key("averaged, nearest stable", color=GREY, linewidth=3.2, alpha=0.5)]
     page = Page(7.6, 2.2 * rows + 0.2, "One period of the settled motions: averaged against integrated", [study(result)], keys)
     panels = page.subplots(rows, columns, sharey=True)
     for i, (axes, m) in enumerate(zip(panels.ravel(), chosen)):
         t, integrated, nearest = aligned(result, m)
         turns = t * m.omega / (2 * np.pi)
-        for q, colour in zip(list(integrated)[:2], (VERMILLION, BLUE)):
+        for q, colour in zip(names, (VERMILLION, BLUE)):
             if nearest:
                 axes.plot(turns, nearest[q], color=colour, linewidth=3.6, alpha=0.3)
             axes.plot(turns, integrated[q], color=colour, linewidth=1.3)
         axes.axhline(0, color="#e4e4e4", linewidth=0.7, zorder=0)
         axes.set_xlim(0, turns[-1])
         axes.set_title(m.title(i), loc="left", fontsize=9)
-    finish_sheet(panels, len(chosen), r"$t/T$, $T = 2\pi/\omega$", "displacement [m]")
+    finish_sheet(panels, len(chosen), r"$t/T$, $T = 2\pi/\omega$", label("displacement", chosen[0].series.units[names[0]]))
     return "time", page.finish()
 
 
@@ -278,9 +306,11 @@ def starts(result):
         return None
     last = runs[-1].attributes["start"]
     chosen = [r for r in runs if r.attributes["start"] == last]
-    names = coordinates(chosen[0])[:2]
-    page = Page(7.8, 1.75 * len(chosen) + 0.3, f"From rest at {last} m: time series, and spectra after settling", [study(result)],
-                [marker_key(f"${q[0]}_{q[1:]}$", "os"[i], color=(VERMILLION, BLUE)[i], markersize=5) for i, q in enumerate(names)])
+    names = leading(chosen)
+    unit = chosen[0].units[names[0]]
+    page = Page(7.8, 1.75 * len(chosen) + 0.3, f"From rest at {without_zeros(last)}{'' if unit == '-' else ' ' + unit}: time series, and spectra after "
+                "settling", [study(result)],
+                [marker_key(symbol(q), "os"[i], color=(VERMILLION, BLUE)[i], markersize=5) for i, q in enumerate(names)])
     panels = page.subplots(len(chosen), len(names) + 1, gridspec_kw={"width_ratios": [1.25] * len(names) + [1]})
     for row, run in zip(panels, chosen):
         omega, number = run.attributes["omega"], int(re.search(r"\d+$", run.path).group())
@@ -288,7 +318,7 @@ def starts(result):
         for axes, q, colour in zip(row, names, (VERMILLION, BLUE)):
             axes.plot(turns, run.column(q), color=colour, linewidth=0.6)
             axes.set_xlim(0, turns[-1])
-            axes.set_ylabel(f"${q[0]}_{q[1:]}$ [m]")
+            axes.set_ylabel(label(symbol(q), unit))
         multiple = int(run.attributes["multiple"])
         settled = ("period T" if multiple == 1 else f"period {multiple}T") if run.attributes["motion"] == "periodic" else run.attributes["motion"]
         row[0].set_title(rf"$\omega$ = {omega:g} rad/s, settles to {settled}", loc="left")
@@ -297,6 +327,12 @@ def starts(result):
         axes.set_xlabel(r"$t/T$")
     panels[-1, -1].set_xlabel(r"frequency / $\omega$")
     return "starts", page.finish()
+
+
+def without_zeros(start):
+    """Of many coordinates only those away from zero are named."""
+    parts = start.split(", ")
+    return start if len(parts) <= 2 else ", ".join(p for p in parts if float(p.split("=")[1]) != 0.0) or "zero"
 
 
 def draw_spectrum(axes, table, names):
@@ -310,6 +346,6 @@ def draw_spectrum(axes, table, names):
     axes.set_ylim(FLOOR, 10)
     axes.set_xticks(np.arange(0, 4.1, 1))
     axes.set_xticks(np.arange(0, 4.1, 0.5), minor=True)
-    axes.set_ylabel("amplitude [m]")
+    axes.set_ylabel(label("amplitude", table.units[names[0]]))
     axes.grid(True, axis="y", color="#ececec", linewidth=0.6)
     axes.set_axisbelow(True)

@@ -207,36 +207,37 @@ def equal_scales(axes, left, right, low, high):
     axes.yaxis.set_major_locator(MultipleLocator(step))
 
 
-def orbit_reach(cells):
-    """One scale for all panels."""
+def orbit_reach(cells, plane=("q1", "q2")):
+    """One scale for all panels. The first coordinate of a plane is the one whose change of sign maps motions to motions."""
     orbits = [o for _, averaged, integrated in cells for o in [*averaged, integrated] if o]
-    half = 1.08 * max(max(np.max(np.abs(o.column("q1"))) for o in orbits), 0.5)
-    low, high = min(np.min(o.column("q2")) for o in orbits), max(np.max(o.column("q2")) for o in orbits)
+    x, y = plane
+    low, high = min(np.min(o.column(y)) for o in orbits), max(np.max(o.column(y)) for o in orbits)
+    half = 1.08 * max(max(np.max(np.abs(o.column(x))) for o in orbits), 0.12 * (high - low))
     rim = 0.06 * (high - low)
     return -half, half, low - rim, high + rim
 
 
-def draw_orbits(axes, averaged, integrated):
+def draw_orbits(axes, averaged, integrated, plane=("q1", "q2")):
+    x, y = plane
     axes.axhline(0, color="#e4e4e4", linewidth=0.7, zorder=0)
     axes.axvline(0, color="#e4e4e4", linewidth=0.7, zorder=0)
     for orbit in averaged:
-        sign = mirror_like(orbit, integrated)
-        q1, q2 = path(orbit, sign)
+        sign = mirror_like(orbit, integrated, x)
+        q1, q2 = path(sign * orbit.column(x), orbit.column(y))
         look = STABLE_ORBIT if orbit.attributes["stable"] else UNSTABLE_ORBIT
         axes.plot(q1, q2, zorder=2, **look)
-        axes.plot(sign * orbit.column("q1")[0], orbit.column("q2")[0], "o", markersize=6.5, markerfacecolor="white",
+        axes.plot(sign * orbit.column(x)[0], orbit.column(y)[0], "o", markersize=6.5, markerfacecolor="white",
                   markeredgewidth=1.3, markeredgecolor=look["color"], zorder=5)
     if not averaged:
         note(axes, "no averaged whirling motion", (0.97, 0.98))
     if integrated:
-        q1, q2 = (smooth(integrated, q)[1] for q in ("q1", "q2"))
+        q1, q2 = (smooth(integrated, q)[1] for q in plane)
         axes.plot(q1, q2, color=INK, linewidth=1.2, zorder=4)
         axes.plot(q1[0], q2[0], "o", color=INK, markersize=4.2, zorder=6)
 
 
-def path(orbit, sign):
+def path(q1, q2):
     """The orbit; a motion in plane as one stroke, since dashes drawn to and fro would fill each other's gaps."""
-    q1, q2 = sign * orbit.column("q1"), orbit.column("q2")
     if np.max(np.abs(q1)) <= 1e-6 * np.max(np.abs(q2)):
         return np.zeros(2), np.array([np.min(q2), np.max(q2)])
     return q1, q2
@@ -252,13 +253,13 @@ def smooth(series, q, times=4):
     return np.append(t[0] + (t[1] - t[0]) / times * np.arange(times * n), t[0] + (t[1] - t[0]) * n), np.append(fine, fine[0])
 
 
-def mirror_like(orbit, integrated):
-    """q1 -> -q1 maps motions to motions: the averaged orbit is shown on the side the integrated one settled on."""
+def mirror_like(orbit, integrated, x):
+    """x -> -x maps motions to motions: the averaged orbit is shown on the side the integrated one settled on."""
     if not integrated:
         return 1
     t = orbit.column("t")[:-1]
-    at = np.interp(t, integrated.column("t"), integrated.column("q1"))
-    q1 = orbit.column("q1")[:-1]
+    at = np.interp(t, integrated.column("t"), integrated.column(x))
+    q1 = orbit.column(x)[:-1]
     return 1 if np.sum((q1 - at) ** 2) <= np.sum((q1 + at) ** 2) else -1
 
 

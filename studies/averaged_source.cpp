@@ -40,7 +40,7 @@ class AveragedSource : public EquilibriumSource {
       for (const int k : ansatz_.harmonics[static_cast<std::size_t>(i)]) {
         const int first = ansatz_.index(i, k);
         all.push_back(
-            {.name = harmonic_name(ansatz_, i, k),
+            {.name = harmonic_name(forced_.coordinates[static_cast<std::size_t>(i)], static_cast<double>(k) / ansatz_.nu),
              .form = k == 0 ? QuadraticForm::coordinate(ansatz_.size(), first) : QuadraticForm::square_sum(ansatz_.size(), {first, first + 1})});
       }
     return all;

@@ -30,6 +30,8 @@ std::string ends(const Branch& b) { return fmt::format("{}, {}", to_string(b.sta
 
 }  // namespace
 
+std::string harmonic_name(const std::string& coordinate, double k) { return fmt::format("{}_h{:g}", coordinate, k); }
+
 std::string label(const Branch& branch, std::size_t special) {
   int number = 0;
   for (std::size_t i = 0; i <= special; ++i) number += branch.special[i].type == branch.special[special].type ? 1 : 0;

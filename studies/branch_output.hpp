@@ -33,6 +33,9 @@ struct BranchOutput {
   double period_at(In u) const { return period_of ? period_of(u) : period; }
 };
 
+/// "q1_h2", "z3_h0.5": harmonic k, in multiples of the excitation frequency, of a coordinate.
+std::string harmonic_name(const std::string& coordinate, double k);
+
 /// "LP", "BP", ...: with its running number on the branch, "LP2".
 std::string label(const continuation::Branch& branch, std::size_t special);
 

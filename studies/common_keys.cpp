@@ -72,11 +72,11 @@ void add_verification_keys(Schema& s) {
          .lower = 0.0});
   s.add({.name = "verification.starts",
          .unit = "m",
-         .description = "further starts at rest: q1, q2, pair after pair",
+         .description = "further starts at rest: all coordinates (q1, q2), start after start",
          .default_value = std::vector<double>{0.0, 0.0, 3.0, 0.0, 10.0, 10.0}});
   s.add({.name = "verification.perturbation",
          .unit = "m",
-         .description = "added to q1 of every start, because q1 = 0 is invariant",
+         .description = "added to the first coordinate out of plane (q1) of every start: motion in plane would stay there",
          .default_value = 1e-3,
          .lower = 0.0,
          .closed_lower = true});

@@ -67,6 +67,20 @@ std::array<int, 2> leading_coordinates(const ForcedSystem& s) {
   return {0, std::min(1, n - 1)};
 }
 
+std::string mirrored_coordinates(const ForcedSystem& s) {
+  std::string names;
+  for (std::size_t i = 0; !s.reflections.empty() && i < s.coordinates.size(); ++i)
+    if (s.reflections[0].signs[i] < 0) names += (names.empty() ? "" : ", ") + s.coordinates[i];
+  return names;
+}
+
+Vector off_symmetry(const ForcedSystem& s, Vector y, double amount) {
+  if (s.reflections.empty()) y[0] += amount;
+  for (const auto& r : s.reflections)
+    if (const auto odd = std::find(r.signs.begin(), r.signs.end(), -1); odd != r.signs.end()) y[odd - r.signs.begin()] += amount;
+  return y;
+}
+
 void check_forced_lens(const Configuration& c, const std::string& key, const std::string& lens, const std::string& range_key, double lower,
                        double upper) {
   if (c.has("modal_model")) {

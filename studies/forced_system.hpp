@@ -27,6 +27,11 @@ struct ForcedSystem {
 
 /// The two coordinates that show a motion best: the first out of plane and the first in plane, or the first two; twice the only one.
 std::array<int, 2> leading_coordinates(const ForcedSystem& s);
+/// Names of the coordinates that the first reflection changes the sign of, "y1, y2"; empty without one.
+std::string mirrored_coordinates(const ForcedSystem& s);
+/// The state (q, q') with `amount` added to the first coordinate of every reflection, which a motion symmetric by chance would never leave; to q1 of
+/// a system without.
+Vector off_symmetry(const ForcedSystem& s, Vector y, double amount);
 
 /// [cable], [model], [damping], [support_motion], or [modal_model] in their place; omega.
 void add_forced_system_keys(Schema& schema);

@@ -73,8 +73,6 @@ double farthest(const Eigen::VectorXcd& from, const Eigen::VectorXcd& to) {
 
 }  // namespace
 
-std::string harmonic_name(const std::string& coordinate, double k) { return fmt::format("{}_h{:g}", coordinate, k); }
-
 double peak(const HarmonicBalance& hb, In u, int coordinate) {
   Vector q(samples);
   for (int m = 0; m < samples; ++m) q[m] = std::abs(displacement(hb, u, coordinate, m));

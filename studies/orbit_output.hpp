@@ -11,9 +11,6 @@ namespace whirl::studies {
 /// live on.
 BranchOutput orbit_output(const OrbitBranches& orbits, const std::string& parameter, int harmonics);
 
-/// "q1_h2", "q1_h0.5"
-std::string harmonic_name(const std::string& coordinate, double k);
-
 /// Largest |q_i| over the period.
 double peak(const models::HarmonicBalance& hb, In u, int coordinate);
 

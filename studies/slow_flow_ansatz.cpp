@@ -94,21 +94,22 @@ AveragedEquations averaged_of(const Configuration& c, const ForcedSystem& forced
   return a;
 }
 
-std::string harmonic_name(const Ansatz& ansatz, int i, int k) { return fmt::format("q{}_h{:.6g}", i + 1, static_cast<double>(k) / ansatz.nu); }
-
 std::vector<PointColumn> harmonic_columns(const ForcedSystem& forced, const Ansatz& a) {
   std::vector<PointColumn> columns;
   const int size = a.size();
+  const auto leading = leading_coordinates(forced);
   for (const bool phases : {false, true})
     for (int i = 0; i < a.coordinates(); ++i)
       for (const int k : a.harmonics[static_cast<std::size_t>(i)]) {
         const std::string& coordinate = forced.coordinates[static_cast<std::size_t>(i)];
-        const std::string name = harmonic_name(a, i, k),
-                          wave = fmt::format("cos({:g} omega t + phase) in {}", static_cast<double>(k) / a.nu, coordinate);
+        const double multiple = static_cast<double>(k) / a.nu;
+        const std::string name = harmonic_name(coordinate, multiple), wave = fmt::format("cos({:g} omega t + phase) in {}", multiple, coordinate);
         const auto z = [a, size, i, k](In u) { return amplitude(a, u.head(size), i, k); };
         if (phases && k > 0) columns.push_back({name + "_phase", "rad", "phase of " + wave, [z](In u) { return std::arg(z(u)); }});
         if (!phases && k > 0) columns.push_back({name, forced.length_unit, "amplitude of " + wave, [z](In u) { return std::abs(z(u)); }});
         if (!phases && k == 0) columns.push_back({name, forced.length_unit, "mean of " + coordinate, [z](In u) { return z(u).real(); }});
+        // Of many coordinates the printed table has room for the two that show a motion best.
+        columns.back().shown = !phases && k > 0 && k <= 2 * a.nu && a.coordinates() > 2 && (i == leading[0] || i == leading[1]);
       }
   return columns;
 }

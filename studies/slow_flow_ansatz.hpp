@@ -21,8 +21,6 @@ void add_ansatz_keys(Schema& schema, const std::string& own_default = "");
 /// `forced` must outlive the result. Throws InputError (one line) for lists and systems that do not fit.
 AveragedEquations averaged_of(const Configuration& c, const ForcedSystem& forced);
 
-/// "q2_h1.5": harmonic 3/2 of the second coordinate.
-std::string harmonic_name(const models::Ansatz& ansatz, int i, int k);
 /// Amplitudes and means, then phases, of a point (x, parameters).
 std::vector<PointColumn> harmonic_columns(const ForcedSystem& forced, const models::Ansatz& ansatz);
 /// "IP" in plane, "W" whirling, "IPD" and "WD" where a subharmonic is present; "P" and "D" for a model without that reflection.

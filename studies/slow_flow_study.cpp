@@ -162,8 +162,7 @@ std::vector<std::vector<SteadyMotion>> settled_motions(const Configuration& c, c
     const auto system = s.forced.at(Vector::Constant(1, grid_value(s, static_cast<std::int64_t>(g), grid)));
     Vector y = Vector::Zero(2 * system.size());
     for (std::size_t i = 0; i < starts[k].size(); ++i) y[static_cast<Eigen::Index>(i)] = starts[k][i];
-    y[0] += c.number("verification.perturbation");
-    motions[g][k] = settle(system, y, options);
+    motions[g][k] = settle(system, off_symmetry(s.forced, y, c.number("verification.perturbation")), options);
     context.progress.show(fmt::format("seeds: {} of {} motions", ++done, jobs));
   });
   return motions;
@@ -261,7 +260,7 @@ void run_verification(const Configuration& c, const Setup& s, const Network& net
   if (!runs.empty()) write_integrated(file, s.forced, s.averaged, runs);
   file.flush();
   context.progress.clear();
-  if (!context.quiet && !runs.empty()) fmt::print(stderr, "\n{}", integrated_text(s.averaged, runs));
+  if (!context.quiet && !runs.empty()) fmt::print(stderr, "\n{}", integrated_text(s.forced, s.averaged, runs));
 }
 
 ExitStatus run(const Configuration& c, RunContext& context) {
@@ -271,6 +270,7 @@ ExitStatus run(const Configuration& c, RunContext& context) {
   ResultFile file(context.output);
   write_study(file, c);
   write_forced_system(file, c);
+  file.attribute("/study", "mirrored", mirrored_coordinates(s->forced));
   file.attribute("/study", "nu", static_cast<double>(s->averaged.ansatz.nu));
   Network net(*s->averaged.flow, s->network);
   net.set_namer([&](const Branch& b) { return motion_prefix(s->forced, s->averaged.ansatz, b); });

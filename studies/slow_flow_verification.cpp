@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <numbers>
 
 #include "core/parallel.hpp"
@@ -121,6 +122,20 @@ void write_motion(ResultFile& file, const ForcedSystem& forced, const Integrated
   }
 }
 
+// (coordinate, harmonic in omega/nu) of the `count` largest amplitudes, means left out, in the ansatz's order.
+template <class Size>
+std::vector<std::pair<int, int>> largest_harmonics(const Ansatz& a, std::size_t count, const Size& size) {
+  std::vector<std::pair<int, int>> all;
+  for (int i = 0; i < a.coordinates(); ++i)
+    for (const int k : a.harmonics[static_cast<std::size_t>(i)])
+      if (k > 0) all.emplace_back(i, k);
+  const auto larger = [&](const auto& p, const auto& q) { return size(p.first, p.second) > size(q.first, q.second); };
+  std::stable_sort(all.begin(), all.end(), larger);
+  if (all.size() > count) all.resize(count);
+  std::sort(all.begin(), all.end());
+  return all;
+}
+
 }  // namespace
 
 double amplitude_of(const Ansatz& ansatz, const SteadyMotion& motion, int i, int k) {
@@ -134,9 +149,8 @@ std::vector<IntegratedRun> integrate_beside(const ForcedSystem& forced, const Av
   const int n = static_cast<int>(forced.coordinates.size());
   std::vector<IntegratedRun> runs;
   std::vector<std::size_t> frequency;
-  const auto add = [&](std::size_t w, Vector y, const std::string& name, bool at_rest) {
-    y[0] += o.perturbation;
-    runs.push_back({omegas[w], std::move(y), name, at_rest, {}, std::nullopt, {}});
+  const auto add = [&](std::size_t w, const Vector& y, const std::string& name, bool at_rest) {
+    runs.push_back({omegas[w], off_symmetry(forced, y, o.perturbation), name, at_rest, {}, std::nullopt, {}});
     frequency.push_back(w);
   };
   for (std::size_t w = 0; w < omegas.size(); ++w) {
@@ -195,7 +209,7 @@ void write_integrated(ResultFile& file, const ForcedSystem& forced, const Averag
   for (const bool integrated : {true, false})
     for (int i = 0; i < a.coordinates(); ++i)
       for (const int k : a.harmonics[static_cast<std::size_t>(i)]) {
-        const std::string name = harmonic_name(a, i, k);
+        const std::string name = harmonic_name(forced.coordinates[static_cast<std::size_t>(i)], static_cast<double>(k) / a.nu);
         if (integrated)
           table.push_back(
               column_of(runs, name, forced.length_unit, "amplitude, integrated", [&](const auto& r) { return amplitude_of(a, r.motion, i, k); }));
@@ -221,24 +235,29 @@ void write_integrated(ResultFile& file, const ForcedSystem& forced, const Averag
     if (runs[i].motion.record.cols() > 0) write_motion(file, forced, runs[i], i + 1);
 }
 
-std::string integrated_text(const AveragedEquations& averaged, const std::vector<IntegratedRun>& runs) {
+std::string integrated_text(const ForcedSystem& forced, const AveragedEquations& averaged, const std::vector<IntegratedRun>& runs) {
   const Ansatz& a = averaged.ansatz;
-  std::vector<std::pair<int, int>> shown;
-  for (int i = 0; i < a.coordinates(); ++i)
-    for (const int k : a.harmonics[static_cast<std::size_t>(i)])
-      if (k > 0 && shown.size() < 4) shown.emplace_back(i, k);
-  std::string out = fmt::format("{:>8} {:<20} {:<14}", "omega", "start", "settles as");
-  for (const auto& [i, k] : shown) out += fmt::format(" {:>17}", harmonic_name(a, i, k) + " int/avg");
+  const auto averaged_amplitude = [&](const IntegratedRun& r, int i, int k) { return std::abs(amplitude(a, r.averaged->u.head(a.size()), i, k)); };
+  const auto shown = largest_harmonics(a, 4, [&](int i, int k) {
+    double most = 0.0;  // fmax: a run that failed has no amplitude
+    for (const auto& r : runs) most = std::fmax(most, std::fmax(amplitude_of(a, r.motion, i, k), r.averaged ? averaged_amplitude(r, i, k) : 0.0));
+    return most;
+  });
+  std::size_t width = 20;
+  for (const auto& r : runs) width = std::max(width, r.start_name.size());
+  std::string out = fmt::format("{:>8} {:<{}} {:<14}", "omega", "start", width, "settles as");
+  for (const auto& [i, k] : shown)
+    out += fmt::format(" {:>17}", harmonic_name(forced.coordinates[static_cast<std::size_t>(i)], static_cast<double>(k) / a.nu) + " int/avg");
   out += "  nearest stable branch\n";
   for (const auto& r : runs) {
     if (r.motion.record.cols() == 0) {
-      out += fmt::format("{:>8.4f} {:<20} {}\n", r.omega, r.start_name, r.motion.why);
+      out += fmt::format("{:>8.4f} {:<{}} {}\n", r.omega, r.start_name, width, r.motion.why);
       continue;
     }
     const std::string kind = r.motion.multiple > 1 ? fmt::format("periodic {}T", r.motion.multiple) : to_string(r.motion.kind);
-    out += fmt::format("{:>8.4f} {:<20} {:<14}", r.omega, r.start_name, kind);
+    out += fmt::format("{:>8.4f} {:<{}} {:<14}", r.omega, r.start_name, width, kind);
     for (const auto& [i, k] : shown) {
-      const std::string avg = r.averaged ? fmt::format("{:.4f}", std::abs(amplitude(a, r.averaged->u.head(a.size()), i, k))) : "-";
+      const std::string avg = r.averaged ? fmt::format("{:.4f}", averaged_amplitude(r, i, k)) : "-";
       out += fmt::format(" {:>8.4f} {:>8}", amplitude_of(a, r.motion, i, k), avg);
     }
     out += fmt::format("  {}\n", r.averaged ? r.averaged->branch : "-");

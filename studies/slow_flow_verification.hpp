@@ -46,6 +46,6 @@ void write_averaged(ResultFile& file, const ForcedSystem& forced, const Averaged
                     const std::vector<std::vector<AveragedSolution>>& solutions);
 /// /verification/runs, series, spectra, transients.
 void write_integrated(ResultFile& file, const ForcedSystem& forced, const AveragedEquations& averaged, const std::vector<IntegratedRun>& runs);
-std::string integrated_text(const AveragedEquations& averaged, const std::vector<IntegratedRun>& runs);
+std::string integrated_text(const ForcedSystem& forced, const AveragedEquations& averaged, const std::vector<IntegratedRun>& runs);
 
 }  // namespace whirl::studies

@@ -488,6 +488,35 @@ def test_slow_flow_reading(folder):
     check([fraction(h) for h in (1, 2, 0.5, 1.5)] == [r"$\omega$", r"2$\omega$", r"$\omega$/2", r"3$\omega$/2"], fraction(0.5))
 
 
+def test_slow_flow_of_other_coordinates(folder):
+    """A model of three coordinates, the second of which may change its sign: what moves most is drawn, by its own name."""
+    from figures_slow_flow import aligned, leading, motions
+    from result_file import read
+    path = os.path.join(folder, "modal.h5")
+    slow_flow(path)
+    with h5py.File(path, "r+") as file:
+        file["study"].attrs["mirrored"] = "z7"
+        for group in [file["verification"], file["branches"], file["special_points"]]:
+            tables = [group] if "omega" in group else [g for g in group.values() if isinstance(g, h5py.Group)]
+            tables += [t for g in tables for t in g.values() if isinstance(t, h5py.Group)]
+            for t in tables:
+                for old in [c for c in t if c.startswith("q1")]:
+                    t.move(old, "z7" + old[2:])
+                if "z7" in t:
+                    t["x"] = 1e-6 * t["z7"][()]
+                    t["x"].attrs.update(t["z7"].attrs)
+    result = read(path)
+    found = motions(result)
+    check([m.words() for m in found] == ["coupled, 2T", "in plane, 2T"], str([m.words() for m in found]))
+    check(set(leading([m.series for m in found])) == {"q2", "z7"}, str(leading([m.series for m in found])))
+    _, integrated, nearest = aligned(result, found[0])
+    check(np.max(np.abs(integrated["z7"] - 0.3 / 0.35 * nearest["z7"])) < 0.02, "the partner, on the run's side")
+    done = plot(path, "--format", "png")
+    check(done.returncode == 0 and done.stderr == "", done.stderr)
+    for name in ("orbits", "response", "starts", "time"):
+        check_picture(os.path.join(folder, f"modal-{name}.png"))
+
+
 def test_two_parameter_chart(folder):
     path = os.path.join(folder, "plane.h5")
     two_parameter(path)
