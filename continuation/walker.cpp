@@ -342,7 +342,7 @@ bool Walker::locate_events() {
 bool Walker::asks_for_shorter_step(const SpecialPoint& e) {
   State& s = *s_;
   if (e.type == EventType::unresolved)  // on curves of special points a change of borders is one, too
-    return (problem_.is_flow() || s.curve.orbit()) && ++s.refinements <= 5 && s.step > 1e-4 * options_.max_step;
+    return ++s.refinements <= 5 && s.step > 1e-4 * options_.max_step;
   const double margin = 1e-9 * (options_.upper - options_.lower), p = e.u[problem_.size()];
   return e.type == EventType::fold && (p > options_.upper + margin || p < options_.lower - margin) && s.step > 1e-5 * options_.max_step;
 }

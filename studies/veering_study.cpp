@@ -66,11 +66,18 @@ Setup setup(const Configuration& c) {
 }
 
 std::vector<std::string> check(const Configuration& c) {
-  (void)setup(c);
-  return {};
+  const Setup s = setup(c);
+  std::vector<std::string> warnings;
+  for (std::size_t i = 0; i < s.shapes.size(); ++i) {
+    HangingCable cable = s.cable;
+    cable.shape = s.shapes[i];
+    cable.axial_stiffness = horizontal_tension(cable) / s.upper;  // the softest
+    for (const auto& w : hanging_cable_warnings(cable)) warnings.push_back(fmt::format("h/b = {:g}, kappa = {:g}: {}", s.heights[i], s.upper, w));
+  }
+  return warnings;
 }
 
-std::string name_of(double h) { return fmt::format("h{:g}", h); }
+std::string name_of(double h) { return fmt::format("h{}", h); }
 
 void write_fan(ResultFile& file, const Setup& s, std::size_t i, std::vector<std::string>& failures) {
   const Geometry& g = s.shapes[i];
@@ -133,7 +140,13 @@ void write_crossings(ResultFile& file, const Setup& s, const Geometry& g, std::v
   TextColumn branch{"branch", "symmetric mode followed", {}};
   for (int mode = 1; 2 * mode <= s.modes && !interrupted; ++mode) {
     continuation::Walker walker(curve, walk);
-    const auto path = walker.walk(curve.start(s.lower * 1.0001, mode, Parity::symmetric), [](const auto&, int) { return !interrupted.load(); });
+    continuation::Branch path;
+    try {
+      path = walker.walk(curve.start(s.lower * 1.0001, mode, Parity::symmetric), [](const auto&, int) { return !interrupted.load(); });
+    } catch (const std::exception& e) {
+      failures.push_back(fmt::format("branch S{}: {}", mode, e.what()));
+      continue;
+    }
     std::vector<double> kappa, omega;
     for (int i = 0; i < path.points(); ++i) {
       kappa.push_back(FrequencyCurve::kappa(path.u(i)));
@@ -144,6 +157,9 @@ void write_crossings(ResultFile& file, const Setup& s, const Geometry& g, std::v
     if (path.stop_reason != continuation::StopReason::parameter_bound && !interrupted)
       failures.push_back(fmt::format("branch {} ended early: {}", name, to_string(path.stop_reason)));
     for (const auto& p : path.special) {
+      if (p.type == continuation::EventType::unresolved)
+        failures.push_back(fmt::format("branch {}: a change at kappa = {:.6g} that no crossing explains: it may have left its mode", name,
+                                       FrequencyCurve::kappa(p.u)));
       if (p.type != continuation::EventType::branch_point) continue;
       t[0].values.push_back(FrequencyCurve::kappa(p.u));
       t[1].values.push_back(unit * curve.omega(p.u));
@@ -199,6 +215,7 @@ std::string json(const Setup& s, const std::vector<Found>& found) {
 
 ExitStatus run(const Configuration& c, RunContext& context) {
   const Setup s = setup(c);
+  for (const auto& w : check(c)) context.warn(w);
   ResultFile file(context.output);
   write_study(file, c);
   write_hanging_cable(file, s.cable);

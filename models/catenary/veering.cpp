@@ -174,20 +174,36 @@ void find_crossings(const InPlaneGalerkin& g, const Vector& s, int count, std::v
       }
 }
 
-// Inclined cable: the ratio of neighbours k, k + 1 has a least value where their slopes agree.
-void find_approaches(const InPlaneGalerkin& g, const Vector& s, int count, std::vector<Approach>& found) {
-  std::vector<Spectrum> at;
-  for (const double value : s) at.push_back(spectrum(g, value * value, Parity::both, count));
-  for (int k = 0; k + 1 < count; ++k)
+// One frequency among those of all parities, by its number within its own.
+struct Level {
+  double omega, slope;
+  std::size_t parity;
+  int index;
+  bool same(const Level& other) const { return parity == other.parity && index == other.index; }
+};
+
+// The ratio of neighbours k, k + 1 has a least value where their slopes agree: searched between scanned points that have the same two there, for
+// on a level cable modes of unlike parity change places.
+void find_approaches(const InPlaneGalerkin& g, const Vector& s, int count, const std::vector<Parity>& parities, std::vector<Approach>& found) {
+  std::vector<std::vector<Level>> at;
+  for (const double value : s) {
+    at.emplace_back();
+    for (std::size_t p = 0; p < parities.size(); ++p) {
+      const Spectrum z = spectrum(g, value * value, parities[p], count);
+      for (Eigen::Index k = 0; k < z.omega.size(); ++k) at.back().push_back({z.omega[k], z.slope[k], p, static_cast<int>(k)});
+    }
+    std::sort(at.back().begin(), at.back().end(), [](const Level& x, const Level& y) { return x.omega < y.omega; });
+  }
+  for (std::size_t k = 0; k + 1 < static_cast<std::size_t>(count); ++k)
     for (std::size_t i = 0; i + 1 < at.size(); ++i) {
-      const double f0 = at[i].slope[k + 1] - at[i].slope[k], f1 = at[i + 1].slope[k + 1] - at[i + 1].slope[k];
+      const Level &lower = at[i][k], &upper = at[i][k + 1];
+      if (!lower.same(at[i + 1][k]) || !upper.same(at[i + 1][k + 1])) continue;
+      const double f0 = upper.slope - lower.slope, f1 = at[i + 1][k + 1].slope - at[i + 1][k].slope;
       if (!(f0 < 0.0 && f1 > 0.0)) continue;
-      const auto f = [&](double x) {
-        const Spectrum z = spectrum(g, x * x, Parity::both, count);
-        return z.slope[k + 1] - z.slope[k];
-      };
+      const auto slope_of = [&](const Level& l, double x) { return spectrum(g, x * x, parities[l.parity], l.index + 1).slope[l.index]; };
+      const auto f = [&](double x) { return slope_of(upper, x) - slope_of(lower, x); };
       const auto [low, high] = bracket(f, s[Eigen::Index(i)], s[Eigen::Index(i) + 1], f0, f1);
-      found.push_back(described(g.mesh().x1, g.mesh().x2, k + 1, 0.5 * (low + high), high - low, false));
+      found.push_back(described(g.mesh().x1, g.mesh().x2, static_cast<int>(k) + 1, 0.5 * (low + high), high - low, false));
     }
 }
 
@@ -200,8 +216,12 @@ std::vector<Approach> closest_approaches(double x1, double x2, double kappa_lowe
   const Vector s = Vector::LinSpaced(scan_points, 0.5 * std::log(kappa_lower), 0.5 * std::log(kappa_upper)).array().exp();
   const InPlaneGalerkin g(x1, x2, functions_for_range(x1, x2, kappa_lower, kappa_upper, count) + 6);
   std::vector<Approach> found;
-  if (std::abs(x1 + x2) < 1e-14 * (x2 - x1)) find_crossings(g, s, count, found);
-  else find_approaches(g, s, count, found);
+  if (std::abs(x1 + x2) < 1e-14 * (x2 - x1)) {
+    find_crossings(g, s, count, found);
+    find_approaches(g, s, count, {Parity::symmetric, Parity::antisymmetric}, found);
+  } else {
+    find_approaches(g, s, count, {Parity::both}, found);
+  }
   std::sort(found.begin(), found.end(),
             [](const Approach& a, const Approach& b) { return std::tie(a.lower_mode, a.kappa) < std::tie(b.lower_mode, b.kappa); });
   return found;

@@ -96,6 +96,42 @@ TEST_CASE("catenary veering: least gaps at h > 0", "[published]") {
   }
 }
 
+TEST_CASE("catenary veering: a deep level cable, whose modes of one parity nearly meet") {
+  const auto shape = [](double h) { return geometry({.span = 100.0, .height = h, .length = 600.0, .weight_per_length = 1.0}); };
+  const Geometry g = shape(0.0), tilted = shape(0.1);
+  const double kappa_lower = 1e-4, kappa_upper = 0.3;
+  const auto level = closest_approaches(g.x1, g.x2, kappa_lower, kappa_upper, 6),
+             inclined = closest_approaches(tilted.x1, tilted.x2, kappa_lower, kappa_upper, 6);
+  // A crossing opens as the cable tilts, every other approach stays where it is.
+  REQUIRE(level.size() == inclined.size());
+  std::vector<double> crossings;
+  for (std::size_t i = 0; i < level.size(); ++i) {
+    CHECK(level[i].lower_mode == inclined[i].lower_mode);
+    CHECK(level[i].kappa == Approx(inclined[i].kappa).epsilon(1e-5));
+    CHECK((level[i].crossing ? inclined[i].gap < 1e-3 : std::abs(level[i].gap / inclined[i].gap - 1.0) < 1e-4));
+    if (level[i].crossing) crossings.push_back(level[i].kappa);
+  }
+  CHECK(level.size() - crossings.size() >= 5);
+  // A walk along a symmetric mode keeps to it past gaps of a hundredth, and meets every crossing once.
+  const ModeSet first = in_plane_modes({.x1 = g.x1, .x2 = g.x2, .kappa = kappa_lower}, {.count = 6, .shapes = false});
+  const FrequencyCurve curve(g.x1, g.x2, functions_for_range(g.x1, g.x2, kappa_lower, kappa_upper, 6), first.modes[0].omega);
+  WalkOptions options;
+  options.lower = std::sqrt(kappa_lower);
+  options.upper = std::sqrt(kappa_upper);
+  std::vector<double> walked;
+  for (int mode = 1; mode <= 3; ++mode) {
+    const Branch branch = Walker(curve, options).walk(curve.start(1.0001 * kappa_lower, mode, Parity::symmetric));
+    for (const auto& s : branch.special) {
+      CHECK(s.type != EventType::unresolved);
+      if (s.type == EventType::branch_point) walked.push_back(FrequencyCurve::kappa(s.u));
+    }
+  }
+  std::sort(walked.begin(), walked.end());
+  std::sort(crossings.begin(), crossings.end());
+  REQUIRE(walked.size() == crossings.size());
+  for (std::size_t i = 0; i < walked.size(); ++i) CHECK(walked[i] == Approx(crossings[i]).epsilon(1e-9));
+}
+
 TEST_CASE("catenary veering: modes exchange their parity, hybrid in between") {
   const Geometry g = unit_geometry(0.3, 0.1);
   const auto found = closest_approaches(g.x1, g.x2, 5e-3, 2e-2, 3, 40);
