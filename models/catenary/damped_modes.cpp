@@ -88,30 +88,104 @@ std::complex<double> damped_root(double omega, double eta) {
   return d >= 0.0 ? Complex(-0.5 * eta, std::sqrt(d)) : Complex(-0.5 * eta + std::sqrt(-d), 0.0);
 }
 
+namespace {
+
+// Roots of one discretisation: oscillating ones by their frequency, the others from the slowest on.
+struct Roots {
+  std::vector<Complex> oscillating;
+  std::vector<double> overdamped;
+};
+
+Roots roots_of(const QuadraticProblem& problem) {
+  Roots r;
+  for (const Complex lambda : problem.roots())
+    if (lambda.imag() > 1e-9 * std::abs(lambda)) r.oscillating.push_back(lambda);
+    else r.overdamped.push_back(lambda.real());
+  std::sort(r.overdamped.begin(), r.overdamped.end(), std::greater<>());
+  std::sort(r.oscillating.begin(), r.oscillating.end(), [](Complex a, Complex b) { return a.imag() < b.imag(); });
+  return r;
+}
+
+// How many of the first `count` agree, from the lowest frequency on. Unpolished roots have lost some digits.
+std::size_t agreeing(const std::vector<Complex>& a, const std::vector<Complex>& b, int count) {
+  std::size_t n = 0;
+  const std::size_t most = std::min({a.size(), b.size(), static_cast<std::size_t>(count)});
+  while (n < most && std::abs(a[n] - b[n]) < 1e-6 * std::abs(b[n])) ++n;
+  return n;
+}
+
+QuadraticProblem problem_of(const InPlaneGalerkin& g, const CoreCable& c) {
+  return {g.stiffness(c.kappa), g.mass(c.kappa, c.eta1, c.eta2), g.mass(c.kappa)};
+}
+
+}  // namespace
+
+// Drag changes which motions are slow: with much of it the lowest oscillating modes may be short waves. So the discretisation is refined by half
+// until the modes asked for stay where they are.
 DampedSet damped_modes(const CoreCable& c, const ModeOptions& o) {
+  constexpr int most_functions = 400;
   ModeOptions undamped = o;
   undamped.verify = false;
   undamped.shapes = false;
-  const ModeSet set = in_plane_modes(c, undamped);  // checks, and tells how many functions resolve that many modes
+  int n = in_plane_modes(c, undamped).functions;  // checks, and tells how many functions resolve that many modes without drag
+  const auto wanted = static_cast<std::size_t>(o.count);
+  Roots now = roots_of(problem_of(InPlaneGalerkin(c.x1, c.x2, n), c));
+  std::size_t good = 0;
+  for (bool settled = false; !settled;) {
+    const Roots coarse = std::move(now);
+    n += n / 2;
+    now = roots_of(problem_of(InPlaneGalerkin(c.x1, c.x2, n), c));
+    good = agreeing(coarse.oscillating, now.oscillating, o.count);
+    settled = good == wanted || (good == now.oscillating.size() && good == coarse.oscillating.size()) || n + n / 2 > most_functions;
+    if (settled) {
+      // Of motions that do not oscillate there may be as many as functions: those count that refinement leaves in place.
+      std::size_t k = 0;
+      while (k < std::min(coarse.overdamped.size(), now.overdamped.size()) &&
+             std::abs(coarse.overdamped[k] - now.overdamped[k]) < 1e-6 * std::abs(now.overdamped[k]))
+        ++k;
+      now.overdamped.resize(k);
+    }
+  }
   DampedSet out;
-  out.functions = set.functions;
-  out.resolved = set.resolved;
-  const InPlaneGalerkin g(c.x1, c.x2, set.functions);
-  const QuadraticProblem problem{g.stiffness(c.kappa), g.mass(c.kappa, c.eta1, c.eta2), g.mass(c.kappa)};
+  out.functions = n;
+  out.resolved = good == wanted || good == now.oscillating.size();
+  out.overdamped = std::move(now.overdamped);
+  const InPlaneGalerkin g(c.x1, c.x2, n);
+  const QuadraticProblem problem = problem_of(g, c);
   const Mirror mirror(g.mesh());
-  std::vector<Complex> oscillating;
-  for (const Complex lambda : problem.roots())
-    if (lambda.imag() > 1e-9 * std::abs(lambda)) oscillating.push_back(lambda);
-    else out.overdamped.push_back(lambda.real());
-  std::sort(out.overdamped.begin(), out.overdamped.end(), std::greater<>());
-  std::sort(oscillating.begin(), oscillating.end(), [](Complex a, Complex b) { return a.imag() < b.imag(); });
-  if (oscillating.size() > std::size_t(o.count)) oscillating.resize(std::size_t(o.count));
-  for (Complex lambda : oscillating) {
+  now.oscillating.resize(good);
+  for (Complex lambda : now.oscillating) {
     const ComplexVector q = problem.polish(lambda);
     if (o.shapes) out.modes.push_back(mode_of(g, mirror, c, lambda, q));
     else out.modes.push_back({lambda, 0.0, {}});
   }
   return out;
+}
+
+std::vector<int> partners(const std::vector<Mode>& modes, const std::vector<DampedMode>& damped) {
+  std::vector<int> partner(modes.size(), -1);
+  if (modes.empty() || damped.empty()) return partner;
+  const double x1 = modes[0].field.coordinate.x1(), x2 = modes[0].field.coordinate.x2();
+  const auto samples = static_cast<Eigen::Index>(40 * std::max(modes.size(), damped.size()));
+  const Vector x = Vector::LinSpaced(samples, x1, x2), weight = x.array().cosh().sqrt();
+  const auto part = [&](const auto& field) {  // (U, V) in the square root of their mass
+    auto f = field.at(x);
+    f.resize(2 * samples, f.cols() / 2);
+    return (f.col(0).array() * weight.replicate(2, 1).array()).matrix().normalized().eval();
+  };
+  Eigen::MatrixXd shapes(2 * samples, Eigen::Index(modes.size()));
+  for (std::size_t i = 0; i < modes.size(); ++i) shapes.col(Eigen::Index(i)) = part(modes[i].field);
+  Eigen::MatrixXd share(modes.size(), damped.size());
+  for (std::size_t j = 0; j < damped.size(); ++j)
+    share.col(Eigen::Index(j)) = (shapes.transpose().cast<Complex>() * part(damped[j].field)).cwiseAbs2();
+  for (std::size_t k = 0; k < std::min(modes.size(), damped.size()); ++k) {
+    Eigen::Index i, j;
+    if (!(share.maxCoeff(&i, &j) > 0.5)) break;
+    partner[std::size_t(i)] = static_cast<int>(j);
+    share.row(i).setZero();
+    share.col(j).setZero();
+  }
+  return partner;
 }
 
 }  // namespace whirl::models::catenary

@@ -70,14 +70,17 @@ struct DampedMode {
   Field<std::complex<double>> field;  ///< largest displacement 1
 };
 
-/// Oscillating modes in plane, the `count` slowest; roots whose drag leaves no oscillation are left out and counted in `overdamped`.
+/// Oscillating modes in plane, the `count` of lowest frequency, as far as a discretisation half as fine again leaves them where they are; roots
+/// whose drag leaves no oscillation, that stay in place too, are in `overdamped`.
 struct DampedSet {
   std::vector<DampedMode> modes;
   std::vector<double> overdamped;  ///< real lambda, slowest decay first
   int functions = 0;
-  bool resolved = false;
+  bool resolved = false;  ///< all modes asked for, or all there are, are listed
 };
 DampedSet damped_modes(const CoreCable& cable, const ModeOptions& options = {});
+/// Which damped mode an undamped one becomes: the one of most alike shape, -1 where none has half of it in common. Both with shapes.
+std::vector<int> partners(const std::vector<Mode>& modes, const std::vector<DampedMode>& damped);
 /// Out of plane L3 = lambda^2 + eta3 lambda = -w^2 with the undamped w: both roots in closed form, that with Im lambda >= 0.
 std::complex<double> damped_root(double omega, double eta);
 

@@ -145,6 +145,44 @@ TEST_CASE("catenary modes: damped") {
   CHECK(slow.modes[0].lambda.imag() == Approx(damped_root(free.modes[1].omega, c.eta1).imag()).epsilon(1e-10));
 }
 
+TEST_CASE("catenary modes: with much drag the lowest frequencies are those of short waves") {
+  const Geometry g = unit_geometry(0.8, 0.3);
+  for (const double kappa : {0.0, 1e-3}) {
+    CoreCable c = core(g, kappa);
+    const ModeSet free = in_plane_modes(c, {.count = 44});
+    c.eta1 = c.eta2 = free.modes[34].omega + free.modes[35].omega;  // the first 35 do not oscillate
+    const DampedSet set = damped_modes(c, {.count = 6});
+    REQUIRE(set.resolved);
+    REQUIRE(set.modes.size() == 6);
+    for (std::size_t k = 0; k < 6; ++k) {
+      const auto lambda = damped_root(free.modes[35 + k].omega, c.eta1);
+      CHECK(std::abs(set.modes[k].lambda - lambda) < 1e-9 * std::abs(lambda));
+    }
+    CHECK(set.overdamped.size() >= 35);
+    CHECK(set.overdamped[0] == Approx(damped_root(free.modes[0].omega, c.eta1).real()).epsilon(1e-9));
+  }
+  CoreCable c = core(g);
+  c.eta2 = 1e12;  // no discretisation follows these waves: none is listed, and that is said
+  const DampedSet none = damped_modes(c, {.count = 4});
+  CHECK_FALSE(none.resolved);
+  CHECK(none.modes.empty());
+}
+
+TEST_CASE("catenary modes: a mode and what drag makes of it") {
+  // Drag across the cable damps the fourth mode, which it brings below the third: that is a longitudinal wave and feels nothing of it.
+  const Geometry g = unit_geometry(0.05, 0.0);
+  CoreCable c = core(g, 0.1134);
+  const ModeSet free = in_plane_modes(c, {.count = 4});
+  c.eta2 = 30.0;
+  const DampedSet damped = damped_modes(c, {.count = 4});
+  REQUIRE(free.modes[2].elastic_share > 0.9);
+  REQUIRE(free.modes[3].elastic_share < 0.1);
+  CHECK(partners(free.modes, damped.modes) == std::vector<int>{0, 1, 3, 2});
+  CHECK(-damped.modes[3].lambda.real() < 0.1);
+  CHECK(-damped.modes[2].lambda.real() > 10.0);
+  CHECK(partners(free.modes, {}) == std::vector<int>(4, -1));
+}
+
 TEST_CASE("catenary modes: a mode satisfies the core system") {
   for (const double kappa : {0.0, 1e-6, 3e-3}) {
     const Geometry g = unit_geometry(1.2, 0.7);
