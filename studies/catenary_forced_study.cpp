@@ -1,11 +1,13 @@
 #include "studies/catenary_forced_study.hpp"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
+#include <atomic>
+#include <boost/math/tools/minima.hpp>
 #include <cmath>
 #include <numbers>
+#include <optional>
 
 #include "core/parallel.hpp"
 #include "models/catenary/forced.hpp"
@@ -37,6 +39,8 @@ Schema schema() {
            .unit = "m",
            .description = fmt::format("amplitude of its {} motion at the frequency, at twice it, ...", d),
            .default_value = std::vector<double>{},
+           .lower = -1e9,
+           .upper = 1e9,
            .example = std::string_view(d) == "horizontal" ? std::optional<Value>(std::vector<double>{0.5}) : std::nullopt});
     s.add({.name = fmt::format("end_motion.{}_phase_deg", d),
            .unit = "deg",
@@ -53,7 +57,10 @@ Schema schema() {
          .min_items = 2,
          .max_items = 2,
          .example = Value{std::vector<double>{0.0, 4.0}}});
-  s.add_count("response.points", "evenly spaced frequencies; more are set about the natural ones", 400, 2, 1e6);
+  s.add_count("response.points", "evenly spaced frequencies", 400, 2, 1e6);
+  s.add({.name = "response.refine",
+         .description = "more frequencies about the natural ones, as close as the drag makes the resonance narrow: 50 each or so",
+         .default_value = true});
   s.add({.name = "response.at",
          .unit = "rad/s",
          .description = "frequencies at which the motion along the cable is written",
@@ -97,38 +104,64 @@ Setup setup(const Configuration& c) {
   if (!(range[0] < range[1])) throw c.error("response.range", "must be increasing");
   const auto points = static_cast<int>(c.integer("response.points"));
   for (int i = 0; i < points; ++i) s.sweep.push_back(range[0] + (range[1] - range[0]) * i / (points - 1));
-  double top = range[1];
-  for (const double w : s.at) top = std::max(top, w * static_cast<double>(s.harmonics.size()));
-  try {
-    (void)ForcedSolver(s.core, top / s.unit);
-  } catch (const std::invalid_argument& e) {
-    throw c.error("response.range", e.what());
-  }
+  const double highest = highest_frequency(s.core) * s.unit, times = static_cast<double>(s.harmonics.size());
+  const auto check_resolved = [&](const std::string& key, double omega, double multiple) {
+    if (omega * multiple >= highest)
+      throw c.error(key, fmt::format("must lie below {:.6g} rad/s{}: motion is too short in waves there", highest / multiple,
+                                     multiple > 1.0 ? fmt::format(" with {:g} harmonics", multiple) : ""));
+  };
+  check_resolved("response.range", range[1], 1.0);
+  for (const double w : s.at) check_resolved("response.at", w, times);
   return s;
 }
 
 std::vector<std::string> check(const Configuration& c) { return hanging_cable_warnings(setup(c).cable); }
 
-// Natural frequencies within the sweep, in rad/s, and further points of the sweep about them.
-std::vector<double> natural(Setup& s, bool lateral) {
-  std::vector<double> omega;
-  for (int count = 8;; count *= 2) {
-    const ModeOptions options{.count = std::min(count, 200), .shapes = false, .verify = false};
-    const ModeSet set = lateral ? out_of_plane_modes(s.core, options) : in_plane_modes(s.core, options);
-    omega.clear();
-    for (const auto& mode : set.modes) omega.push_back(mode.omega * s.unit);
-    if (omega.back() > s.sweep.back() || count >= 200) break;
-  }
-  std::erase_if(omega, [&](double w) { return w > s.sweep.back() || w < s.sweep.front(); });
-  return omega;
+struct Resonance {
+  double omega, decay;  // rad/s, 1/s
+};
+constexpr int most_resonances = 200;  // a plane
+
+// Rayleigh's estimate of how fast drag lets a mode decay [sqrt(g/a)].
+double decay_of(const CoreCable& c, const Mode& mode, bool lateral) {
+  if (lateral) return 0.5 * c.eta3;
+  const Vector x = Vector::LinSpaced(2000, c.x1, c.x2), weight = x.array().cosh();
+  const Matrix f = mode.field.at(x);
+  const double along = weight.dot(f.col(0).cwiseAbs2()), across = weight.dot(f.col(1).cwiseAbs2());
+  return 0.5 * (c.eta1 * along + c.eta2 * across) / (along + across);
 }
 
-void refine(Setup& s, const std::vector<double>& omega) {
+// Natural frequencies within the sweep.
+std::vector<Resonance> natural(const Setup& s, bool lateral, RunContext& context) {
+  ModeSet set;
+  for (int count = 8;; count *= 2) {
+    const ModeOptions options{.count = std::min(count, most_resonances), .verify = false};
+    set = lateral ? out_of_plane_modes(s.core, options) : in_plane_modes(s.core, options);
+    if (set.modes.back().omega * s.unit > s.sweep.back() || count >= most_resonances) break;
+  }
+  if (!(set.modes.back().omega * s.unit > s.sweep.back()))
+    context.warn(fmt::format("natural frequencies {} beyond the {}th, {:.6g} rad/s, are not listed", lateral ? "out of plane" : "in plane",
+                             set.modes.size(), set.modes.back().omega * s.unit));
+  std::vector<Resonance> found;
+  for (const auto& mode : set.modes) {
+    const double w = mode.omega * s.unit;
+    if (w <= s.sweep.back() && w >= s.sweep.front()) found.push_back({w, decay_of(s.core, mode, lateral) * s.unit});
+  }
+  return found;
+}
+
+// Without drag motion has no bound at a resonance: nothing is gained closer than this, relative.
+constexpr double closest = 3e-4;
+
+void refine(Setup& s, const std::vector<Resonance>& resonances) {
   const double low = s.sweep.front(), high = s.sweep.back();
-  for (const double w : omega)
-    for (double d = 3e-4; d < 0.03; d *= 1.6)
-      for (const double near : {w * (1.0 - d), w * (1.0 + d)})
+  for (const auto& [omega, decay] : resonances) {
+    const double width = decay > 0.0 ? std::min(closest, 0.25 * decay / omega) : closest;
+    if (decay > 0.0 && width < closest) s.sweep.push_back(omega);
+    for (double d = width; d < 0.03; d *= d < closest ? 2.0 : 1.6)
+      for (const double near : {omega * (1.0 - d), omega * (1.0 + d)})
         if (near > low && near < high) s.sweep.push_back(near);
+  }
   std::sort(s.sweep.begin(), s.sweep.end());
 }
 
@@ -152,11 +185,13 @@ Row row_of(const PeakFinder& peaks, const ForcedMotion& m) {
 double arc(const Setup& s, double x) { return s.cable.shape.a * (std::sinh(x) - std::sinh(s.cable.shape.x1)); }
 
 // First-harmonic response over the sweep.
-std::vector<Row> write_resonance(ResultFile& file, const Setup& s, const ForcedSolver& solver) {
+std::vector<Row> write_resonance(ResultFile& file, const Setup& s, const ForcedSolver& solver, RunContext& context) {
   const PeakFinder peaks(solver.mesh());
   std::vector<Row> rows(s.sweep.size());
+  std::atomic<std::size_t> done{0};
   parallel_for(rows.size(), [&](std::size_t i) {
     if (!interrupted) rows[i] = row_of(peaks, solver.at(s.sweep[i] / s.unit, s.harmonics[0]));
+    context.progress.show(fmt::format("{} of {} frequencies", ++done, rows.size()));
   });
   const double a = s.cable.shape.a, H = horizontal_tension(s.cable);
   std::vector<Column> t;
@@ -187,12 +222,12 @@ void add_amplitude(std::vector<Column>& t, const char* name, const char* unit, c
   t.push_back({fmt::format("{}_phase", name), "rad", "phase: amplitude cos(omega t + phase)", to_std(v.array().arg().matrix())});
 }
 
-// The motion along the cable at one base frequency: each harmonic, and what they add up to over a period.
-void write_motion(ResultFile& file, const Setup& s, const ForcedSolver& solver, double omega, int points) {
+// The motion along the cable at one base frequency: each harmonic, and what they add up to over a period. The least total tension [N].
+double write_motion(ResultFile& file, const Setup& s, const ForcedSolver& solver, double omega, int points) {
   const Along line = along(s.cable, points);
   const double a = s.cable.shape.a, H = horizontal_tension(s.cable);
   const Vector c = line.x.array().cosh();
-  const std::string group = fmt::format("/motions/w{:.6g}", omega);
+  const std::string group = fmt::format("/motions/w{}", omega);
   std::vector<ForcedMotion> parts;
   for (std::size_t k = 0; k < s.harmonics.size(); ++k) {
     const ForcedMotion m = solver.at(double(k + 1) * omega / s.unit, s.harmonics[k]);
@@ -221,56 +256,154 @@ void write_motion(ResultFile& file, const Setup& s, const ForcedSolver& solver, 
   file.table(group + "/history", {{"t", "s", "time", to_std(times / s.unit)},
                                   {"tension_lower", "N", "dynamic tension at the lower end", to_std(T.row(0).transpose())},
                                   {"tension_upper", "N", "dynamic tension at the upper end", to_std(T.row(T.rows() - 1).transpose())}});
+  return (H * c + T.rowwise().minCoeff()).minCoeff();
 }
 
-void write_natural(ResultFile& file, const std::vector<double> omega[2]) {
+void write_natural(ResultFile& file, const std::vector<Resonance> resonances[2]) {
   std::vector<Column> t{{"omega", "rad/s", "natural frequency without drag within the range", {}}};
   TextColumn plane{"plane", "in_plane or out_of_plane", {}};
   for (int lateral = 0; lateral < 2; ++lateral)
-    for (const double w : omega[lateral]) {
-      t[0].values.push_back(w);
+    for (const auto& [omega, decay] : resonances[lateral]) {
+      t[0].values.push_back(omega);
       plane.values.emplace_back(lateral ? "out_of_plane" : "in_plane");
     }
   file.table("/natural", t, {plane});
 }
 
+// A largest value over the sweep, between its points too.
+struct Largest {
+  double omega = 0.0;
+  Peak peak;
+};
+
+template <class Value>
+Largest largest_of(const Setup& s, const std::vector<Row>& rows, const Value& value) {
+  std::size_t top = 0;
+  for (std::size_t i = 0; i < rows.size(); ++i)
+    if (std::isfinite(value.in(rows[i]).value) && !(value.in(rows[i]).value <= value.in(rows[top]).value)) top = i;
+  const Largest sampled{s.sweep[top], value.in(rows[top])};
+  if (!value.bounded || top == 0 || top + 1 == rows.size() || !(sampled.peak.value > 0.0)) return sampled;
+  // About the sampled frequency, for a resonance may be narrower than rounding in the frequency itself allows to halve.
+  const auto below = [&](double offset) { return -value.at(sampled.omega + offset).value; };
+  const auto found = boost::math::tools::brent_find_minima(below, s.sweep[top - 1] - sampled.omega, s.sweep[top + 1] - sampled.omega, 26);
+  const double omega = sampled.omega + found.first;
+  return -found.second > sampled.peak.value ? Largest{omega, value.at(omega)} : sampled;
+}
+
+struct TensionOf {
+  const Setup& s;
+  const ForcedSolver& solver;
+  const PeakFinder& peaks;
+  bool bounded;
+  Peak in(const Row& row) const { return row.T; }
+  Peak at(double omega) const { return peaks.largest(solver.at(omega / s.unit, s.harmonics[0]).in_plane, Quantity::T); }
+};
+struct LateralOf {
+  const Setup& s;
+  const ForcedSolver& solver;
+  const PeakFinder& peaks;
+  bool bounded;
+  Peak in(const Row& row) const { return row.W; }
+  Peak at(double omega) const { return peaks.largest(solver.at(omega / s.unit, s.harmonics[0]).lateral, Quantity::W); }
+};
+
+bool moves_in_plane(const EndMotion& e) { return e.U1 != 0.0 || e.V1 != 0.0 || e.U2 != 0.0 || e.V2 != 0.0; }
+bool moves_laterally(const EndMotion& e) { return e.W1 != 0.0 || e.W2 != 0.0; }
+
+// The natural frequency of an undamped plane that this harmonic meets, if it meets one.
+std::optional<double> unbounded_at(const CoreCable& c, const EndMotion& e, double omega) {
+  const auto meets = [&](const ModeSet& set) {
+    return std::any_of(set.modes.begin(), set.modes.end(), [&](const Mode& m) { return std::abs(omega / m.omega - 1.0) < 1e-8; });
+  };
+  const auto modes_up_to = [&](bool lateral) {
+    ModeSet set;
+    for (int count = 8; count <= 2 * most_resonances; count *= 2) {
+      const ModeOptions options{.count = count, .shapes = false, .verify = false};
+      set = lateral ? out_of_plane_modes(c, options) : in_plane_modes(c, options);
+      if (set.modes.back().omega > omega) break;
+    }
+    return set;
+  };
+  if (moves_in_plane(e) && c.eta1 == 0.0 && c.eta2 == 0.0 && meets(modes_up_to(false))) return omega;
+  if (moves_laterally(e) && c.eta3 == 0.0 && meets(modes_up_to(true))) return omega;
+  return std::nullopt;
+}
+
+std::string list(const std::vector<Resonance>& resonances) {
+  std::string out;
+  for (const auto& r : resonances) out += fmt::format("{}{:.8g}", out.empty() ? "" : ", ", r.omega);
+  return out.empty() ? "none in the range" : out;
+}
+
 ExitStatus run(const Configuration& c, RunContext& context) {
   Setup s = setup(c);
   for (const auto& w : hanging_cable_warnings(s.cable)) context.warn(w);
-  const std::vector<double> omega[2] = {natural(s, false), natural(s, true)};
-  for (const auto& w : omega) refine(s, w);
+  const std::vector<Resonance> resonances[2] = {natural(s, false, context), natural(s, true, context)};
+  const EndMotion& first = s.harmonics[0];
+  const bool in_plane = moves_in_plane(first), lateral = moves_laterally(first);
+  if (c.flag("response.refine")) {
+    if (in_plane) refine(s, resonances[0]);
+    if (lateral) refine(s, resonances[1]);
+  }
   double top = s.sweep.back();
   for (const double w : s.at) top = std::max(top, w * static_cast<double>(s.harmonics.size()));
   const ForcedSolver solver(s.core, top / s.unit);
+  const PeakFinder peaks(solver.mesh());
   ResultFile file(context.output);
   write_study(file, c);
   write_hanging_cable(file, s.cable);
-  write_natural(file, omega);
-  const auto rows = write_resonance(file, s, solver);
-  file.flush();
-  for (const double w : s.at)
-    if (!interrupted) write_motion(file, s, solver, w, int(c.integer("response.cable_points")));
+  write_natural(file, resonances);
   std::vector<std::string> failures;
-  const double H = horizontal_tension(s.cable);
-  std::size_t highest = 0, slack = 0;
+  if (!in_plane && !lateral) context.warn("the first harmonic of the end motion is zero, and so is the resonance diagram, which shows it alone");
+  const auto rows = write_resonance(file, s, solver, context);
+  file.flush();
+  context.progress.clear();
+  std::size_t slack = 0;
   for (std::size_t i = 0; i < rows.size(); ++i) {
-    if (!std::isfinite(rows[i].T.value))
+    if (!std::isfinite(rows[i].T.value) || !std::isfinite(rows[i].W.value))
       failures.push_back(fmt::format("no finite motion at {:.10g} rad/s: a natural frequency without drag", s.sweep[i]));
-    else if (!(rows[i].T.value <= rows[highest].T.value)) highest = i;
     if (rows[i].total.smallest.value < 0.0) ++slack;
   }
   if (slack > 0) context.warn(fmt::format("the cable would go slack at {} of {} frequencies: linear theory ends there", slack, rows.size()));
-  if (context.json)
-    fmt::print("{{\n  \"largest\": {{\"omega\": {:.17g}, \"tension\": {:.17g}, \"s\": {:.17g}}},\n  \"natural\": [{}],\n  \"points\": {}\n}}\n",
-               s.sweep[highest], H * rows[highest].T.value, arc(s, rows[highest].T.x), fmt::join(omega[0], ", "), rows.size());
+  // Undamped, the largest value is that of the sampled frequency nearest to a resonance, and says nothing.
+  const bool bounded =
+      (!in_plane || s.core.eta1 > 0.0 || s.core.eta2 > 0.0 || resonances[0].empty()) && (!lateral || s.core.eta3 > 0.0 || resonances[1].empty());
+  if (!bounded) context.warn("without drag motion is unbounded at the natural frequencies: largest values are those of the frequencies computed");
+  const double H = horizontal_tension(s.cable), a = s.cable.shape.a;
+  const Largest T = largest_of(s, rows, TensionOf{s, solver, peaks, bounded}), W = largest_of(s, rows, LateralOf{s, solver, peaks, bounded});
+  for (const double w : s.at) {
+    if (interrupted) break;
+    const double least = write_motion(file, s, solver, w, int(c.integer("response.cable_points")));
+    if (least < 0.0) context.warn(fmt::format("at {:.10g} rad/s the cable would go slack: linear theory ends there", w));
+    for (std::size_t k = 0; k < s.harmonics.size(); ++k)
+      if (const auto omega = unbounded_at(s.core, s.harmonics[k], double(k + 1) * w / s.unit))
+        failures.push_back(
+            fmt::format("{:.10g} rad/s is a natural frequency without drag: motion is unbounded, what is written is rounding", *omega * s.unit));
+  }
+  if (context.json) {
+    std::string omegas;
+    for (const auto& r : resonances[0]) omegas += fmt::format("{}{}", omegas.empty() ? "" : ", ", r.omega);
+    fmt::print(
+        "{{\n  \"largest\": {{\"omega\": {:.17g}, \"tension\": {:.17g}, \"s\": {:.17g}, \"bounded\": {}}},\n  \"natural\": [{}],\n  "
+        "\"points\": {}\n}}\n",
+        T.omega, H * T.peak.value, arc(s, T.peak.x), bounded, omegas, rows.size());
+  }
   if (!context.quiet) {
-    fmt::print(stderr, "natural frequencies in plane [rad/s]: {:.8g}\n", fmt::join(omega[0], ", "));
-    fmt::print(stderr, "largest dynamic tension {:.6g} N at {:.6g} rad/s, {:.4g} m from the lower end; static at the upper end {:.6g} N\n",
-               H * rows[highest].T.value, s.sweep[highest], arc(s, rows[highest].T.x), H * std::cosh(s.cable.shape.x2));
+    const char* scope = bounded ? "" : " of the frequencies computed";
+    if (in_plane) {
+      fmt::print(stderr, "natural frequencies in plane [rad/s]: {}\n", list(resonances[0]));
+      fmt::print(stderr, "largest dynamic tension{} {:.6g} N at {:.10g} rad/s, {:.4g} m from the lower end; static at the upper end {:.6g} N\n",
+                 scope, H * T.peak.value, T.omega, arc(s, T.peak.x), H * std::cosh(s.cable.shape.x2));
+    }
+    if (lateral) {
+      fmt::print(stderr, "natural frequencies out of plane [rad/s]: {}\n", list(resonances[1]));
+      fmt::print(stderr, "largest displacement out of plane{} {:.6g} m at {:.10g} rad/s, {:.4g} m from the lower end\n", scope, a * W.peak.value,
+                 W.omega, arc(s, W.peak.x));
+    }
     for (const double w : s.at) {
-      const ForcedMotion m = solver.at(w / s.unit, s.harmonics[0]);
-      const Peak T = PeakFinder(solver.mesh()).largest(m.in_plane, Quantity::T);
-      fmt::print(stderr, "at {:.6g} rad/s: dynamic tension up to {:.8g} N, {:.4g} m from the lower end\n", w, H * T.value, arc(s, T.x));
+      const ForcedMotion m = solver.at(w / s.unit, first);
+      const Peak here = peaks.largest(m.in_plane, Quantity::T);
+      fmt::print(stderr, "at {:.10g} rad/s: dynamic tension up to {:.8g} N, {:.4g} m from the lower end\n", w, H * here.value, arc(s, here.x));
     }
   }
   return finish_tables(file, context, failures);

@@ -74,9 +74,10 @@ Peak PeakFinder::maximum(const Vector& values, F&& f) const {
   const auto last = values.size() - 1;
   Peak best = values[last] > values[0] ? Peak{values[last], x_[last]} : Peak{values[0], x_[0]};
   const double top = values.maxCoeff(), near = top - 0.02 * (top - values.minCoeff());
-  for (Eigen::Index i = 1; i < last; ++i) {
-    if (values[i] < near || values[i] < values[i - 1] || values[i] < values[i + 1]) continue;
-    const auto found = boost::math::tools::brent_find_minima([&](double s) { return -f(s); }, x_[i - 1], x_[i + 1], 34);
+  for (Eigen::Index i = 0; i <= last; ++i) {  // beside an end too, where the end may be lower than what follows
+    const auto before = std::max<Eigen::Index>(i - 1, 0), behind = std::min(i + 1, last);
+    if (values[i] < near || values[i] < values[before] || values[i] < values[behind]) continue;
+    const auto found = boost::math::tools::brent_find_minima([&](double s) { return -f(s); }, x_[before], x_[behind], 34);
     if (-found.second > best.value) best = {-found.second, found.first};
   }
   return best;

@@ -43,12 +43,26 @@ int functions_for(const CoreCable& c, int modes) {
   return degree(std::numbers::pi * modes / w.travel_time * w.densest, w.growth);
 }
 
+namespace {
+
+constexpr double most_waves = 1000.0;  // in K
+
+double largest_drag(const CoreCable& c) { return std::max({c.eta1, c.eta2, c.eta3}); }
+
+}  // namespace
+
+// |L| = |-w^2 + i eta w| stands in place of w^2.
 int functions_up_to(const CoreCable& c, double omega) {
   if (!(omega >= 0.0 && std::isfinite(omega))) throw std::invalid_argument(fmt::format("a frequency must be >= 0, got {:g}", omega));
   const Waves w = waves_on(c);
-  const double densest = omega * w.densest;
-  if (!(densest < 1000.0)) throw std::invalid_argument(fmt::format("the frequency {:g} sqrt(g/a) has too many waves along the cable", omega));
+  const double densest = std::sqrt(omega * std::hypot(omega, largest_drag(c))) * w.densest;
+  if (!(densest < most_waves)) throw std::invalid_argument(fmt::format("the frequency {:g} sqrt(g/a) has too many waves along the cable", omega));
   return degree(densest, w.growth);
+}
+
+double highest_frequency(const CoreCable& c) {
+  const double square = std::pow(most_waves / waves_on(c).densest, 2), drag2 = std::pow(largest_drag(c), 2);  // w^2 (w^2 + drag^2) = square^2
+  return square * std::sqrt(2.0 / (drag2 + std::hypot(drag2, 2.0 * square)));
 }
 
 }  // namespace whirl::models::catenary

@@ -5,7 +5,7 @@
 /// of K later; a function with a singularity at x = i pi/2 at the rate at which its ellipse through there grows.
 ///
 ///     int n = functions_for(cable, 8);            // modes
-///     int m = functions_up_to(cable, 12.5);       // motion at frequencies up to 12.5 sqrt(g/a)
+///     int m = functions_up_to(cable, 12.5);       // motion at frequencies up to 12.5 sqrt(g/a); drag makes waves shorter
 
 namespace whirl::models::catenary {
 
@@ -13,5 +13,7 @@ struct CoreCable;
 
 int functions_for(const CoreCable& cable, int modes);
 int functions_up_to(const CoreCable& cable, double omega);
+/// Up to where motion can be resolved [sqrt(g/a)]; functions_up_to throws std::invalid_argument from there on.
+double highest_frequency(const CoreCable& cable);
 
 }  // namespace whirl::models::catenary

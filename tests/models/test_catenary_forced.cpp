@@ -171,3 +171,42 @@ TEST_CASE("catenary forced: the total tension and where the cable goes slack") {
   CHECK(still.smallest.value == Approx(1.0).epsilon(1e-6));
   CHECK(wild.smallest.value < 0.0);
 }
+
+TEST_CASE("catenary forced: drag shortens waves, and the discretisation follows") {
+  const Geometry g = unit_geometry(0.9, 0.3);
+  for (const double kappa : {0.0, 1e-3}) {
+    CoreCable c = core(g, kappa);
+    c.eta1 = c.eta2 = c.eta3 = 3e3;
+    const ForcedSolver solver(c, 2.0), finer(c, 6.0);
+    REQUIRE(finer.functions() > 1.3 * solver.functions());
+    const EndMotion ends{.U2 = 0.01, .V2 = 0.02, .W2 = 0.03};
+    const ForcedMotion a = solver.at(2.0, ends), b = finer.at(2.0, ends);
+    const Vector x = Vector::LinSpaced(101, g.x1, g.x2);
+    const Eigen::MatrixXcd f = a.in_plane.at(x), h = b.in_plane.at(x), w = a.lateral.at(x), v = b.lateral.at(x);
+    for (int k = 0; k < 4; ++k) CHECK((f.col(k) - h.col(k)).norm() < 1e-8 * h.col(k).norm());
+    CHECK((w.col(0) - v.col(0)).norm() < 1e-9 * v.col(0).norm());
+    CHECK_THROWS_AS(ForcedSolver(c, 1.0001 * highest_frequency(c)), std::invalid_argument);
+    CHECK_NOTHROW(functions_up_to(c, 0.9999 * highest_frequency(c)));
+  }
+}
+
+TEST_CASE("catenary forced: a largest value just beside an end is found") {
+  // The tension of a long soft cable, moved at its lower end: its maximum stands a two-thousandth of the length before the upper end.
+  const Geometry g = geometry({.span = 12.0, .height = 5.0, .length = 40.0, .weight_per_length = 1.0});
+  const HangingCable cable{.shape = g, .mass_per_length = 0.05, .axial_stiffness = 30.0, .drag_normal = 0.01, .drag_lateral = 0.02};
+  const CoreCable c = core_of(cable);
+  const double w = 5.0 / frequency_unit(cable);
+  const ForcedSolver solver(c, 2.0 * w);
+  const PeakFinder peaks(solver.mesh());
+  for (const auto& ends : {EndMotion{.U1 = 0.01, .V1 = Complex(0.02, 0.01)}, EndMotion{.U1 = Complex(0.0, 0.02)}, EndMotion{.V2 = 0.02}}) {
+    const ForcedMotion m = solver.at(w, ends);
+    for (const Quantity q : {Quantity::U, Quantity::V, Quantity::T}) {
+      const Peak found = peaks.largest(m.in_plane, q);
+      double dense = 0.0;
+      const Vector s = Vector::LinSpaced(40001, std::sinh(g.x1), std::sinh(g.x2));
+      for (const double v : s) dense = std::max(dense, std::abs(m.in_plane.at(std::clamp(std::asinh(v), g.x1, g.x2), q)));
+      CHECK(found.value >= dense * (1.0 - 1e-12));
+      CHECK(found.value < dense * (1.0 + 1e-6));
+    }
+  }
+}
