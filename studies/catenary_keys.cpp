@@ -102,6 +102,8 @@ HangingCable hanging_cable_of(const Configuration& c) {
     return cable;
   } catch (const std::invalid_argument& e) {
     throw c.error(count == 3 ? culprit(c, e.what()) : given, e.what());
+  } catch (const std::exception&) {  // a search that met overflow or underflow
+    throw c.error(given, "lengths and tensions of such sizes are beyond the reach of this computer's numbers");
   }
 }
 

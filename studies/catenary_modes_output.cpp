@@ -77,6 +77,15 @@ void write_reduced(ResultFile& file, const HangingCable& cable, const ReducedOpt
   CoreCable core = core_of(cable);
   core.kappa = std::max(core.kappa, 1e-7);  // stands for an inextensible cable
   const ReducedModel r = reduced_model(core, o);
+  for (Eigen::Index i = 0; i < r.omega.size(); ++i)
+    for (Eigen::Index j = 0; j < r.omega.size(); ++j)
+      for (const int multiple : {1, 3}) {
+        const double detuning = multiple * r.omega[i] / r.omega[j] - 1.0;
+        if (i == j || (multiple == 1 && i > j) || std::abs(detuning) > 0.02) continue;
+        context.warn(fmt::format(
+            "reduced: coordinates q{} and q{} are within {:.2g} % of 1:{}, where the model's second order does not hold: keep fewer modes", i + 1,
+            j + 1, 100.0 * std::abs(detuning), multiple));
+      }
   const models::ModalModel m = in_si_units(r, cable);
   std::vector<Column> t{{"equation", "-", "number of the coordinate, from 1", {}}, {"coefficient", "1/s^2/m^k", "on the left-hand side", {}}};
   for (int i = 0; i < m.size(); ++i) t.push_back({fmt::format("power{}", i + 1), "-", fmt::format("of q{}", i + 1), {}});

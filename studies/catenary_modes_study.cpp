@@ -69,6 +69,7 @@ HangingCable setup(const Configuration& c) {
     } catch (const std::invalid_argument& e) {
       throw c.error("sweep.height_over_span", e.what());
     }
+  if (c.integer("modes.points") == 1) throw c.error("modes.points", "must be 0, for no shapes, or at least 2");
   const HangingCable cable = hanging_cable_of(c);
   if (c.flag("series.compare")) try {
       if (core_of(cable).kappa > 0.0) throw std::invalid_argument("the series method is for inextensible cables: leave out cable.axial_stiffness");
@@ -94,7 +95,7 @@ const char* plane_name(bool lateral) { return lateral ? "out_of_plane" : "in_pla
 
 struct Found {
   ModeSet set;
-  std::vector<std::complex<double>> lambda;  // with drag, in sqrt(g/a), one a mode; empty if some modes in plane do not oscillate
+  std::vector<std::complex<double>> lambda;  // with drag, in sqrt(g/a), one a mode; nan for a mode that drag leaves no likeness of
   DampedSet damped;                          // in plane
 };
 
@@ -105,8 +106,8 @@ Found find(const CoreCable& core, int count, bool lateral) {
     for (const auto& mode : f.set.modes) f.lambda.push_back(damped_root(mode.omega, core.eta3));
   if (!lateral && (core.eta1 > 0.0 || core.eta2 > 0.0)) {
     f.damped = damped_modes(core, {.count = count, .functions = f.set.functions});
-    if (f.damped.overdamped.empty())
-      for (const auto& mode : f.damped.modes) f.lambda.push_back(mode.lambda);
+    for (const int partner : partners(f.set.modes, f.damped.modes))
+      f.lambda.push_back(partner < 0 ? std::complex<double>(std::nan(""), std::nan("")) : f.damped.modes[std::size_t(partner)].lambda);
   }
   return f;
 }
@@ -126,11 +127,11 @@ std::vector<Column> mode_columns(const Found& found, double unit) {
     for (std::size_t k = 0; k < t.size(); ++k) t[k].values.push_back(values[k]);
   }
   if (found.lambda.empty()) return t;
-  Column decay{"decay", "1/s", "decay rate of the damped mode, -Re lambda", {}}, damped{"damped_omega", "rad/s", "Im lambda", {}};
-  for (std::size_t i = 0; i < found.set.modes.size(); ++i) {
-    const bool known = i < found.lambda.size();
-    decay.values.push_back(known ? -found.lambda[i].real() * unit : std::nan(""));
-    damped.values.push_back(known ? found.lambda[i].imag() * unit : std::nan(""));
+  Column decay{"decay", "1/s", "decay rate of the damped mode of the same shape, -Re lambda; nan where there is none", {}},
+      damped{"damped_omega", "rad/s", "its Im lambda", {}};
+  for (const auto& lambda : found.lambda) {
+    decay.values.push_back(-lambda.real() * unit);
+    damped.values.push_back(lambda.imag() * unit);
   }
   t.push_back(decay);
   t.push_back(damped);
@@ -201,7 +202,7 @@ void write_sweep(ResultFile& file, const Configuration& c, double h, bool latera
       if (asymptotic) t[std::size_t(count) + k + 1].values[i] = asymptotic_frequency(g.m, int(k) + 1).value_or(std::nan(""));
     }
   });
-  const std::string group = fmt::format("/sweep/{}/h{:g}", plane_name(lateral), h);
+  const std::string group = fmt::format("/sweep/{}/h{}", plane_name(lateral), h);
   file.table(group, t);
   file.attribute(group, "height_over_span", h);
   if (unresolved > 0) failures.push_back(fmt::format("{}: {} of {} cables could not be resolved", group, unresolved.load(), points));
@@ -282,8 +283,14 @@ ExitStatus run(const Configuration& c, RunContext& context) {
     file.attribute(group, "counted_below", f.set.counted_below * unit);
     file.attribute(group, "functions", double(f.set.functions));
     if (points > 1) write_shapes(file, cable, f, lateral, points);
-    if (!lateral && !f.damped.modes.empty()) write_damped(file, cable, f.damped, points);
-    if (!f.set.complete())
+    if (!lateral && f.damped.functions > 0) write_damped(file, cable, f.damped, points);
+    if (!lateral && f.damped.functions > 0 && !f.damped.resolved)
+      failures.push_back(fmt::format("with drag only {} of {} modes in plane are resolved by {} functions: the others are too short waves",
+                                     f.damped.modes.size(), count, f.damped.functions));
+    if (!f.set.resolved)
+      failures.push_back(fmt::format("modes {} are not resolved by {} functions: last coefficients are {:.1e} of the whole", plane_name(lateral),
+                                     f.set.functions, f.set.tail));
+    else if (!f.set.complete())
       failures.push_back(fmt::format("modes {} are not proved complete: {} listed, {} counted", plane_name(lateral), f.set.expected, f.set.counted));
     if (!context.quiet) fmt::print(stderr, "{}", text(f, unit, lateral));
     if (!context.quiet && !lateral) fmt::print(stderr, "{}", damped_text(f.damped, unit));
@@ -299,6 +306,14 @@ ExitStatus run(const Configuration& c, RunContext& context) {
 }
 
 }  // namespace
+
+std::string hanging_modes_table(const Configuration& c) {
+  const HangingCable cable = hanging_cable_of(c);
+  std::string out;
+  for (const auto& w : hanging_cable_warnings(cable)) out += "warning: " + w + "\n";
+  for (const bool lateral : {false, true}) out += text(find(core_of(cable), 8, lateral), frequency_unit(cable), lateral);
+  return out;
+}
 
 StudyKind catenary_modes_study() { return {schema(), run, check}; }
 

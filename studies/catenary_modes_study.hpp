@@ -6,5 +6,7 @@
 namespace whirl::studies {
 
 StudyKind catenary_modes_study();
+/// What `whirl modes` prints of a study with a hanging cable: its eight lowest frequencies a plane.
+std::string hanging_modes_table(const Configuration& c);
 
 }  // namespace whirl::studies

@@ -190,6 +190,7 @@ double largest_tension(const SuperharmonicFlow& flow, Coefficients choice, In u)
 
 void write_study(ResultFile& file, const Configuration& c) {
   file.attribute("/study", "kind", c.kind());
+  file.attribute("/study", "outcome", std::string(ResultFile::unfinished));
   file.attribute("/study", "version", std::string(WHIRL_VERSION));
   file.attribute("/study", "git_hash", git_hash());
   file.attribute("/study", "libraries", library_versions());
@@ -203,6 +204,11 @@ void write_study(ResultFile& file, const Configuration& c) {
         },
         value);
   });
+}
+
+std::string frequency_label(double omega) {
+  const std::string short_label = fmt::format("w{:.4f}", omega);
+  return std::stod(short_label.substr(1)) == omega ? short_label : fmt::format("w{}", omega);
 }
 
 void write_cable_numbers(ResultFile& file, const Cable<double>& cable) {

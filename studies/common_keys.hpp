@@ -33,6 +33,8 @@ double largest_tension(const models::SuperharmonicFlow& flow, models::Coefficien
 
 /// /study: kind, version, git hash, libraries, configuration as text and as attributes.
 void write_study(ResultFile& file, const Configuration& c);
+/// "w2.1000", with more digits where four decimals do not tell the frequency [rad/s]: part of a group's name.
+std::string frequency_label(double omega);
 void write_cable_numbers(ResultFile& file, const models::Cable<double>& cable);
 /// Warnings and stop reasons into /study; the exit status they amount to.
 ExitStatus finish(ResultFile& file, RunContext& context, const std::vector<continuation::Branch>& branches);

@@ -31,7 +31,13 @@ ExitStatus run(const std::string& file, const std::vector<std::string>& override
   if (kind.check) (void)kind.check(configuration);  // bad input before anything is written
   ResultFile::check_writable(context.output);
   catch_interrupts();
-  const ExitStatus status = kind.run(configuration, context);
+  ExitStatus status;
+  try {
+    status = kind.run(configuration, context);
+  } catch (const std::exception& e) {
+    ResultFile::mark_failed(context.output, e.what());
+    throw;
+  }
   if (!quiet) fmt::print(stderr, "{}result: {}\n", interrupted ? "interrupted; " : "", context.output.string());
   return status;
 }

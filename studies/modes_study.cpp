@@ -8,6 +8,7 @@
 
 #include "models/shallow/resonances.hpp"
 #include "models/statics.hpp"
+#include "studies/catenary_modes_study.hpp"
 #include "studies/common_keys.hpp"
 
 namespace whirl::studies {
@@ -309,6 +310,7 @@ ExitStatus run(const Configuration& c, RunContext& context) {
 StudyKind modes_study() { return {schema(), run, check}; }
 
 std::string modes_table(const Configuration& c) {
+  if (c.schema().find("cable.height_difference")) return hanging_modes_table(c);
   if (!c.schema().find("cable.chord_tension")) throw InputError(fmt::format("{}: a {} study has no [cable]", c.source(), c.kind()));
   return text(report(c));
 }

@@ -139,10 +139,10 @@ void hold_metadata(hid_t access) {
 
 [[noreturn]] void refuse(const fs::path& path, std::string_view why) { throw InputError(fmt::format("{}: {}", path.string(), why)); }
 
-bool is_locked(const fs::path& path) {  // HDF5 holds an exclusive lock on a file it writes
+bool is_locked(const fs::path& path, int wanted) {  // HDF5 holds an exclusive lock on a file it writes, a shared one on a file it reads
   const int fd = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
   if (fd < 0) return false;
-  const bool locked = ::flock(fd, LOCK_SH | LOCK_NB) != 0 && errno == EWOULDBLOCK;
+  const bool locked = ::flock(fd, wanted | LOCK_NB) != 0 && errno == EWOULDBLOCK;
   ::close(fd);
   return locked;
 }
@@ -165,7 +165,7 @@ hid_t open_file(const fs::path& path) {
   if (!fs::exists(path, ignored)) refuse(path, "no such file");
   if (fs::is_directory(path, ignored)) refuse(path, "is a directory, not a result file");
   if (::access(path.c_str(), R_OK) != 0) refuse(path, "cannot be read");
-  if (is_locked(path)) refuse(path, "is being written by another program");
+  if (is_locked(path, LOCK_SH)) refuse(path, "is being written by another program");
   if (H5Fis_hdf5(path.c_str()) <= 0) refuse(path, "is not an HDF5 file");
   const hid_t id = H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
   if (id < 0) refuse(path, "is truncated or damaged");
@@ -288,13 +288,25 @@ void ResultFile::check_writable(const fs::path& path) {
   if (fs::exists(path, ignored)) {
     if (!fs::is_regular_file(path, ignored)) refuse(path, "is not a regular file");
     if (::access(path.c_str(), W_OK) != 0) refuse(path, "is not writable");
-    if (is_locked(path)) refuse(path, "is being written by another program");
+    if (is_locked(path, LOCK_SH)) refuse(path, "is being written by another program");
+    if (is_locked(path, LOCK_EX)) refuse(path, "is open in another program");
     return;
   }
   const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
   if (!fs::exists(folder, ignored)) refuse(path, fmt::format("folder {} does not exist", folder.string()));
   if (!fs::is_directory(folder, ignored)) refuse(path, fmt::format("{} is not a folder", folder.string()));
   if (::access(folder.c_str(), W_OK | X_OK) != 0) refuse(path, fmt::format("folder {} is not writable", folder.string()));
+}
+
+void ResultFile::mark_failed(const fs::path& path, const std::string& reason) {
+  start_library();
+  std::error_code ignored;
+  if (!fs::exists(path, ignored) || H5Fis_hdf5(path.c_str()) <= 0) return;
+  if (ResultReader(path).text_attribute("/study", "outcome") != unfinished) return;
+  const HdfHandle file = opened(H5Fopen(path.c_str(), H5F_ACC_RDWR, H5P_DEFAULT), H5Fclose, path.string());
+  const auto study = ensure_group(file, "/study");
+  write_text_attribute(study, "outcome", "failed");
+  write_text_attribute(study, "stop_reasons", reason);
 }
 
 /// Writes; after a failure (disk full) the file is let go as it is, for closing it would write half of its structure over the last flushed state.

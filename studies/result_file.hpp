@@ -53,6 +53,10 @@ class ResultFile {
   /// Throws the InputError the constructor would throw, but leaves the place as it is: nothing is created, nothing truncated.
   static void check_writable(const std::filesystem::path& path);
 
+  static constexpr const char* unfinished = "unfinished";  ///< attribute `outcome` of /study while a run goes on
+  /// Of a run that ended by an exception after its file was closed: outcome "failed" and why. Leaves a file alone whose run has told its outcome.
+  static void mark_failed(const std::filesystem::path& path, const std::string& reason);
+
   void attribute(const std::string& group, const std::string& name, double value);
   void attribute(const std::string& group, const std::string& name, const std::string& value);
   void attribute(const std::string& group, const std::string& name, const std::vector<double>& values);

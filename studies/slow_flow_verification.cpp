@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "core/parallel.hpp"
+#include "studies/common_keys.hpp"
 
 namespace whirl::studies {
 namespace {
@@ -195,7 +196,7 @@ void write_averaged(ResultFile& file, const ForcedSystem& forced, const Averaged
         table[0].values.push_back(t);
         for (std::size_t i = 0; i + 1 < table.size(); ++i) table[i + 1].values.push_back(y[static_cast<Eigen::Index>(i)]);
       }
-      const std::string group = fmt::format("/verification/averaged/w{:.4f}-{}", omega, k + 1);
+      const std::string group = fmt::format("/verification/averaged/{}-{}", frequency_label(omega), k + 1);
       file.table(group, table);
       file.attribute(group, "omega", omega);
       file.attribute(group, "branch", s.branch);

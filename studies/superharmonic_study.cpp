@@ -168,7 +168,8 @@ void run_verification(const Configuration& c, const Setup& s, const Superharmoni
     for (const auto& [branch, u] : net.solutions_at(omega))
       states.back().push_back({net.branches()[std::size_t(branch)].name, u, net.unstable_at(branch, u) == 0});
     int k = 0;
-    for (const auto& state : states.back()) write_averaged_orbit(file, fmt::format("/verification/averaged/w{:.4f}-{}", omega, ++k), flow, state);
+    for (const auto& state : states.back())
+      write_averaged_orbit(file, fmt::format("/verification/averaged/{}-{}", frequency_label(omega), ++k), flow, state);
   }
   const auto runs = verify(flow, omegas, states, o, context);
   if (!runs.empty()) write_runs(file, runs, flow, s.flow.order);

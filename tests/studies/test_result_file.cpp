@@ -217,6 +217,38 @@ TEST_CASE("a file in use is refused, not called damaged", "[result_file]") {
   CHECK(refusal_to_write(path) == path.string() + ": is being written by another program");
 }
 
+TEST_CASE("a result that a reader holds open is refused and stays as it is", "[result_file]") {
+  const Folder folder;
+  write_example(folder / "r.h5");
+  const auto size = fs::file_size(folder / "r.h5");
+  {
+    const ResultReader held(folder / "r.h5");
+    CHECK(refusal_to_write(folder / "r.h5") == (folder / "r.h5").string() + ": is open in another program");
+    CHECK_THROWS_AS(ResultFile(folder / "r.h5"), InputError);
+  }
+  CHECK(fs::file_size(folder / "r.h5") == size);
+  CHECK(ResultReader(folder / "r.h5").tables().size() == 2);
+  CHECK_NOTHROW(ResultFile::check_writable(folder / "r.h5"));
+}
+
+TEST_CASE("a run that ends by an exception tells so in its file", "[result_file]") {
+  const Folder folder;
+  for (const std::string outcome : {"unfinished", "complete"}) {
+    {
+      ResultFile file(folder / "r.h5");
+      file.attribute("/study", "outcome", outcome);
+      file.table("/branches/B0", branch(5));
+    }
+    ResultFile::mark_failed(folder / "r.h5", "no solution");
+    const ResultReader reader(folder / "r.h5");
+    CHECK(reader.text_attribute("/study", "outcome") == (outcome == "complete" ? "complete" : "failed"));
+    if (outcome == "unfinished") CHECK(reader.text_attribute("/study", "stop_reasons") == "no solution");
+    CHECK(reader.column("/branches/B0", "omega").values.size() == 5);
+  }
+  ResultFile::mark_failed(folder / "none.h5", "nothing");
+  CHECK_FALSE(fs::exists(folder / "none.h5"));
+}
+
 TEST_CASE("export writes one CSV file per table", "[export]") {
   const Folder folder;
   write_example(folder / "r.h5");

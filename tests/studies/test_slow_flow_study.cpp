@@ -116,3 +116,32 @@ TEST_CASE("slow-flow study: bad input, one clear line, nothing written") {
     CHECK(!fs::exists(f.path / "x.h5"));
   }
 }
+
+TEST_CASE("slow-flow study: coordinates by the model's names, starts off the model's own plane") {
+  const Folder f;
+  // A string forced in q1: motion out of plane is q2, and its start must leave q2 = 0 to settle on whirling.
+  const std::string text = slurp(std::string(WHIRL_SOURCE_DIR) + "/studies/string-threshold.toml");
+  const std::string model = text.substr(text.find("[modal_model]"), text.find("[ansatz]") - text.find("[modal_model]"));
+  std::ofstream(f / "string.toml") << "study = \"slow-flow\"\n"
+                                   << model << "[ansatz]\nkind = \"list\"\nq1 = [1.0]\nq2 = [1.0]\n[continuation]\nrange = [0.9, 1.2]\n"
+                                   << "[seeds]\nmax_periods = 0\n[verification]\nomega = [1.03]\nstarts = [0.0, 0.0]\n";
+  const Ran r = program(f, "run string.toml -o s.h5");
+  INFO(r.err);
+  REQUIRE(r.status == 0);
+  const ResultReader file(f / "s.h5");
+  CHECK(file.text_attribute("/study", "mirrored") == "q2");
+  REQUIRE(special(file, "BP", "IP1").size() == 2);
+  CHECK(special(file, "BP", "IP1")[0] == Approx(1.0180097647).epsilon(0).margin(1e-9));
+  CHECK(file.text_column("/verification/runs", "branch").values.back() == "W1");
+  CHECK(file.column("/verification/runs", "q2_h1").values.back() == Approx(0.1819).epsilon(0).margin(1e-4));
+  CHECK(r.err.find("q1_h1 int/avg     q2_h1 int/avg") != std::string::npos);
+
+  const Ran many = run(f, "--set model.kind=multi-mode --set ansatz.kind=complete --set ansatz.harmonics=3 --set continuation.range=[1.9,1.92]" +
+                              branches_only + "-o m.h5");
+  INFO(many.err);
+  REQUIRE(many.status == 0);
+  const ResultReader modes(f / "m.h5");
+  CHECK(modes.text_attribute("/study", "mirrored") == "y1, y2, y3");
+  CHECK(modes.column("/branches/IP1", "z1_h1").values.front() > 0.5);
+  CHECK(many.err.find("z1_h1 [m]") != std::string::npos);
+}
