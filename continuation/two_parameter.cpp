@@ -305,6 +305,7 @@ DefiningCurve Follower::run(double p2, const Observer& observer) {
   o.walk.lower = o.range2[0];
   o.walk.upper = o.range2[1];
   o.walk.locate_events = true;
+  o.walk.explain_changes = false;
   o.walk.peaks.clear();
   o.walk.user_values.clear();
   o.walk.bounds = {{static_cast<int>(blocks_.indices[0].size()), o.range1[0], o.range1[1]}};  // of p1

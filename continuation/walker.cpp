@@ -341,8 +341,7 @@ bool Walker::locate_events() {
 // A change that nothing explains may be a jump to another curve; a fold out of range means that the curve was out of range for a while.
 bool Walker::asks_for_shorter_step(const SpecialPoint& e) {
   State& s = *s_;
-  if (e.type == EventType::unresolved)  // on curves of special points a change of borders is one, too
-    return ++s.refinements <= 5 && s.step > 1e-4 * options_.max_step;
+  if (e.type == EventType::unresolved) return options_.explain_changes && ++s.refinements <= 5 && s.step > 1e-4 * options_.max_step;
   const double margin = 1e-9 * (options_.upper - options_.lower), p = e.u[problem_.size()];
   return e.type == EventType::fold && (p > options_.upper + margin || p < options_.lower - margin) && s.step > 1e-5 * options_.max_step;
 }

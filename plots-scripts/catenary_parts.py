@@ -3,7 +3,6 @@ import numpy as np
 
 from figures_common import NB, number
 
-KINDS = {"symmetric": "-", "antisymmetric": (0, (4, 2)), "hybrid": (0, (1, 1.2))}
 
 
 def in_order(group, prefix):
@@ -32,15 +31,21 @@ def scalar(columns, name):
 
 
 def sentence(result, words):
-    partial = "" if result.group("study").attributes.get("outcome") == "complete" else " Partial result."
-    return f"{words}{partial}"
+    return words if result.group("study").attributes.get("outcome") == "complete" else f"{words.rstrip('.')}. Partial result."
+
+
+def nonzero(*columns):
+    """Something in them is worth a panel."""
+    return any(np.any(np.abs(c) > 0) for c in columns)
 
 
 def moved(table, columns, scale):
-    """The cable's line displaced by scale times (U, V): x, y in metres."""
+    """The cable's line displaced by scale times two columns, tangential and normal: x, y in metres."""
+    return displaced(table, *(table.column(c) for c in columns), scale)
+
+
+def displaced(table, U, V, scale):
     x, y = table.column("x"), table.column("y")
-    slope = np.gradient(y, x)
-    cosine = 1 / np.hypot(1, slope)
-    sine = slope * cosine
-    U, V = (table.column(c) for c in columns)
+    dx, dy = np.gradient(x), np.gradient(y)
+    cosine, sine = dx / np.hypot(dx, dy), dy / np.hypot(dx, dy)
     return x + scale * (U * cosine - V * sine), y + scale * (U * sine + V * cosine)

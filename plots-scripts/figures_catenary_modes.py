@@ -1,64 +1,120 @@
 """Figures of a catenary-modes result: mode shapes in and out of plane, frequencies against the sag parameter."""
 import numpy as np
 
-from catenary_parts import KINDS, cable_words, in_order, moved, scalar, sentence
-from figures_common import BLUE, CYCLE, DASHES, GREY, INK, VERMILLION, Page, letter, line_key, number
+from catenary_parts import cable_words, displaced, in_order, moved, scalar, sentence
+from figures_common import BLUE, CYCLE, DASHES, GREEN, GREY, INK, VERMILLION, Page, letter, line_key, number
+from result_file import ResultError
 
 
 def figures(result):
     found = [("modes", modes(result)), ("tension", tension(result)), ("sag", sag(result)), ("short-waves", short_waves(result))]
-    return [(name, figure) for name, figure in found if figure is not None]
+    found = [(name, figure) for name, figure in found if figure is not None]
+    if not found:
+        raise ResultError(f"holds nothing to draw: {lacking(result)}")
+    return found
+
+
+def lacking(result):
+    if result.group("study").attributes.get("outcome") != "complete":
+        return "the run ended before its first mode"
+    if result.group("modes"):
+        return "it has frequencies but no shapes of modes (modes.points is 0) and no sweep over the sag"
+    return "it has no modes (modes.in_plane and modes.out_of_plane are 0) and no sweep over the sag"
 
 
 # --- shapes ----------------------------------------------------------------------------------------------------------------
 
 MOST = 6  # modes drawn in each plane
+TALL = 1.5  # height over span from which modes in plane stand side by side in tall panels
+LARGEST = 0.08  # of the cable's size, displacement drawn
 
 
 def modes(result):
     """The cable at rest and moved by each of its first modes."""
     planes = [(p, in_order(result.group(f"shapes/{p}"), "mode")[:MOST]) for p in ("in_plane", "out_of_plane")]
-    planes = [(p, names) for p, names in planes if names]
+    planes = [(p, [(int(mode), result.group(f"shapes/{p}/{name}")) for mode, name in names]) for p, names in planes if names]
     if not planes:
         return None
-    keys = [line_key("at rest", color=GREY, linewidth=0.9), line_key("in plane, largest displacement 8 % of the span", color=BLUE, linewidth=1.5),
-            line_key("out of plane, W along the cable", color=VERMILLION, linewidth=1.5)]
-    page = Page(7.2, 1.65 * sum(-(-len(n) // 3) for _, n in planes), "Modes of a hanging cable", [sentence(result, cable_words(result))], keys)
-    panels = page.subplots(sum(-(-len(n) // 3) for _, n in planes), 3).ravel()
-    used = 0
-    for plane, names in planes:
-        for mode, name in names:
-            axes = panels[used]
-            used += 1
-            table = result.group(f"shapes/{plane}/{name}")
-            (draw_in_plane if plane == "in_plane" else draw_lateral)(axes, table, scalar(result.group("cable").columns, "span"))
-            axes.set_title(mode_title(result.group(f"modes/{plane}"), int(mode)), loc="left", fontsize=8.5)
-        used = -(-used // 3) * 3
-    for axes in panels:
-        if not axes.lines:
-            axes.axis("off")
+    line = planes[0][1][0][1]
+    width, height = np.ptp(line.column("x")), np.ptp(line.column("y"))
+    tall = height > TALL * width
+    rows = [(p, shapes[i:i + n]) for p, shapes in planes for n in [6 if tall and p == "in_plane" else 3] for i in range(0, len(shapes), n)]
+    heights = [3.4 if tall and p == "in_plane" else 1.65 for p, _ in rows]
+    page = Page(9.6 if tall else 7.2, sum(heights), "Modes of a hanging cable", [sentence(result, cable_words(result))],
+                mode_keys(planes, height > width))
+    grid = page.figure.add_gridspec(len(rows), 6, height_ratios=heights)
+    for r, (plane, shapes) in enumerate(rows):
+        wide = 1 if tall and plane == "in_plane" else 2
+        for k, (mode, table) in enumerate(shapes):
+            axes = page.figure.add_subplot(grid[r, wide * k:wide * (k + 1)])
+            title = mode_title(result.group(f"modes/{plane}"), mode, table)
+            axes.set_title(title.replace(", ", "\n") if wide == 1 else title, loc="left", fontsize=8.5)
+            if plane == "in_plane":
+                draw_in_plane(axes, table, LARGEST * max(width, height))
+            else:
+                draw_lateral(axes, table)
+            if wide == 1 and k > 0:
+                axes.set_ylabel("")
     return page.finish()
 
 
-def mode_title(table, mode):
+def mode_keys(planes, high):
+    shown = {p: [table for _, table in shapes] for p, shapes in planes}
+    inside = [longitudinal(t) for t in shown.get("in_plane", [])]
+    keys = [line_key("at rest", color=GREY, linewidth=0.9)]
+    if inside:
+        size = "height" if high else "span"
+        keys.append(line_key(f"in plane, largest displacement {100 * LARGEST:g} % of the {size}", color=BLUE, linewidth=1.5))
+    if any(inside):
+        keys.append(line_key("longitudinal: U drawn across the cable", color=GREEN, linewidth=1.5))
+    if "out_of_plane" in shown:
+        keys.append(line_key("out of plane, W along the cable", color=VERMILLION, linewidth=1.5))
+    return keys
+
+
+def mode_title(modes_table, mode, shape):
     i = mode - 1
-    return f"{mode}: {number(table.column('frequency')[i], 4)} Hz, {table.column('kind')[i]}"
+    kind = "longitudinal" if longitudinal(shape) else modes_table.column("kind")[i]
+    return f"{mode}: {number(modes_table.column('frequency')[i], 4)} Hz, {kind}"
 
 
-def draw_in_plane(axes, table, span):
+def longitudinal(shape):
+    """Most of the motion, by its mean square, is along the cable."""
+    return "U" in shape.columns and np.mean(shape.column("U") ** 2) > np.mean(shape.column("V") ** 2)
+
+
+def draw_in_plane(axes, table, scale):
     axes.plot(table.column("x"), table.column("y"), color=GREY, linewidth=0.9)
-    axes.plot(*moved(table, ("U", "V"), 0.08 * span), color=BLUE, linewidth=1.5)
+    axes.plot(*moved(table, ("U", "V"), scale), color=BLUE, linewidth=1.5)
+    if longitudinal(table):
+        draw_across(axes, table, scale)
     axes.set_aspect("equal", adjustable="datalim")
     axes.set_xlabel("x [m]", labelpad=1)
     axes.set_ylabel("y [m]", labelpad=1)
 
 
-def draw_lateral(axes, table, _):
+ARROW = {"arrowstyle": "->", "color": INK, "linewidth": 0.8, "shrinkA": 0, "shrinkB": 0, "mutation_scale": 6}
+
+
+def draw_across(axes, table, scale):
+    """U as an ordinate square to the cable, and inside it arrows the way the cable moves."""
+    U = table.column("U")
+    x, y = displaced(table, 0 * U, U, scale)
+    axes.plot(x, y, color=GREEN, linewidth=1.2)
+    around = [np.concatenate([a, table.column(c)[::-1]]) for a, c in ((x, "x"), (y, "y"))]
+    axes.fill(*around, color=GREEN, alpha=0.15, linewidth=0)
+    tails, heads = (np.array(displaced(table, part * U, 0.5 * U, scale)).T for part in (-0.6, 0.6))
+    for i in np.linspace(0, len(U) - 1, 14).astype(int)[1:-1:2]:
+        if abs(U[i]) > 0.3:
+            axes.annotate("", xy=heads[i], xytext=tails[i], arrowprops=ARROW)
+
+
+def draw_lateral(axes, table):
     axes.axhline(0, color=GREY, linewidth=0.9)
     axes.plot(table.column("s"), table.column("W"), color=VERMILLION, linewidth=1.5)
     axes.set_ylim(-1.15, 1.15)
     axes.set_xlabel("s [m]", labelpad=1)
-    axes.set_ylabel("W", labelpad=1)
+    axes.set_ylabel("W [m]", labelpad=1)
 
 
 def tension(result):
@@ -67,7 +123,8 @@ def tension(result):
     if not names:
         return None
     table = result.group("modes/in_plane")
-    keys = [line_key(mode_title(table, int(m)), color=CYCLE[k], linewidth=1.5) for k, (m, _) in enumerate(names)]
+    titles = [mode_title(table, int(m), result.group(f"shapes/in_plane/{name}")) for m, name in names]
+    keys = [line_key(title, color=CYCLE[k], linewidth=1.5) for k, title in enumerate(titles)]
     page = Page(6.6, 2.9, "Dynamic tension of modes whose largest displacement is 1 m", [sentence(result, cable_words(result))], keys)
     axes = page.subplots()[0, 0]
     axes.axhline(0, color=GREY, linewidth=0.7)

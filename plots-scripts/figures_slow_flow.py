@@ -12,7 +12,7 @@ from figures_superharmonic import draw_orbits, finish_sheet, grid, orbit_keys, o
 PANELS = 6       # amplitudes drawn: the largest
 SAME = 1e-3      # settled motions are one when their harmonics agree to this share of the largest
 MOVES = 1e-3     # a coordinate is at rest below this share of the largest displacement
-FLOOR = 1e-3     # m, of spectra
+DECADES = 4      # of spectra
 COLOURS = {"IP": BLUE, "IPD": GREEN, "W": VERMILLION, "WD": VERMILLION, "P": BLUE, "D": VERMILLION}
 WORDS = {"IP": "in plane", "IPD": "in plane, subharmonic", "W": "coupled", "WD": "coupled, subharmonic", "P": "period T",
          "D": "subharmonic"}
@@ -229,7 +229,8 @@ def orbits(result):
     rows = -(-len(cells) // columns)
     left, right, low, high = orbit_reach(cells, plane)
     panel = (7.6 - 0.7) / columns
-    page = Page(7.6, rows * (panel * (high - low) / (right - left) + 0.62) + 0.2, "Coupled orbits: averaged against integrated",
+    height = min(panel * (high - low) / (right - left), 4.5)
+    page = Page(7.6, rows * (height + 0.62) + 0.2, "Coupled orbits: averaged against integrated",
                 [study(result)], orbit_keys(cells))
     panels = page.subplots(rows, columns)
     for axes, (words, partners, series) in zip(panels.ravel(), cells):
@@ -337,13 +338,15 @@ def without_zeros(start):
 
 def draw_spectrum(axes, table, names):
     h = table.column("harmonic")
+    top = 10.0 ** np.ceil(np.log10(1.2 * max(max(np.max(table.column(q)) for q in names), 1e-300)))
+    floor = top * 10.0 ** -DECADES
     for q, marker, colour, shift in zip(names, "os", (VERMILLION, BLUE), (-0.05, 0.05)):
-        seen = table.column(q) > FLOOR
-        axes.vlines(h[seen] + shift, FLOOR, table.column(q)[seen], color=colour, linewidth=1.1)
+        seen = table.column(q) > floor
+        axes.vlines(h[seen] + shift, floor, table.column(q)[seen], color=colour, linewidth=1.1)
         axes.plot(h[seen] + shift, table.column(q)[seen], linestyle="none", marker=marker, markersize=3.4, color=colour)
     axes.set_yscale("log")
     axes.set_xlim(-0.3, 4.3)
-    axes.set_ylim(FLOOR, 10)
+    axes.set_ylim(floor, top)
     axes.set_xticks(np.arange(0, 4.1, 1))
     axes.set_xticks(np.arange(0, 4.1, 0.5), minor=True)
     axes.set_ylabel(label("amplitude", table.units[names[0]]))

@@ -685,17 +685,23 @@ def catenary_modes(path):
         table(file, "/sweep/in_plane/h0", {"asymptotic1": late, "asymptotic2": 2.001 / (1 - sag)})
 
 
-def catenary_forced(path):
+def catenary_forced(path, inside=1.0, outside=0.0, end="upper"):
+    """In plane and out of plane, each with its resonance; the end that moves has the larger tension."""
     with h5py.File(path, "w") as file:
         line = hanging(file, "catenary-forced")
+        file["study"].attrs["end_motion.end"] = end
         omega = np.linspace(0, 4, 50)
-        peak = 1 / (0.01 + (omega - 2) ** 2)
-        table(file, "/resonance", {"omega": omega, "tension": 1e3 * peak, "tension_upper": 9e2 * peak, "V": peak})
-        table(file, "/natural", {"omega": [2.0], "plane": ["in_plane"]})
+        peak, lateral = inside / (0.01 + (omega - 2) ** 2), outside / (0.01 + (omega - 1) ** 2)
+        still = {"upper": "lower", "lower": "upper"}[end]
+        table(file, "/resonance", {"omega": omega, "tension": 1e3 * peak, f"tension_{end}": 9e2 * peak, f"tension_{still}": 5e2 * peak,
+                                   "V": peak, "W": lateral})
+        table(file, "/natural", {"omega": [2.0, 1.0], "plane": ["in_plane", "out_of_plane"]})
         w = np.sin(np.pi * line["x"] / 100)
         for name in ("w0.8", "w1.2"):
-            table(file, f"/motions/{name}/h1", {**line, "U": 0.1 * w, "U_phase": 0 * w, "V": w, "V_phase": 0 * w, "tension": 1e3 * w})
-            table(file, f"/motions/{name}/envelope", {**line, "static_tension": 6e3 + 0 * w, "total_max": 7e3 + w, "total_min": 5e3 - w})
+            T = 1e3 * inside * w
+            columns = {**{f"{c}_phase": 0 * w for c in "UVW"}, "U": 0.1 * inside * w, "V": inside * w, "W": outside * w, "tension": T}
+            table(file, f"/motions/{name}/h1", {**line, **columns})
+            table(file, f"/motions/{name}/envelope", {**line, "static_tension": 6e3 + 0 * w, "total_max": 6e3 + T, "total_min": 6e3 - T})
 
 
 def veering(path):
@@ -723,6 +729,112 @@ def test_hanging_cables(folder):
         check(made == sorted(f"{make.__name__}-{n}.{f}" for n in names for f in ("png", "pdf")), str(made))
         for n in made:
             (check_picture if n.endswith("png") else check_document)(os.path.join(folder, n))
+
+
+def forced_figures(folder, **motion):
+    """Figures of a made-up catenary-forced result by name: titles of their panels, legend, lines of each panel."""
+    import figures_catenary_forced
+    from result_file import read
+    path = os.path.join(folder, "forced.h5")
+    catenary_forced(path, **motion)
+    done = plot(path, "--format", "png")
+    check(done.returncode == 0 and done.stderr == "", done.stderr)
+    for name in ("along", "resonance", "shape"):
+        check_picture(os.path.join(folder, f"forced-{name}.png"))
+    return dict(figures_catenary_forced.figures(read(path)))
+
+
+def legend(figure):
+    return [text.get_text() for text in figure.legends[0].get_texts()]
+
+
+def test_cable_forced_out_of_plane(folder):
+    """Out of plane alone: W is drawn everywhere, with its own natural frequency; nothing of zeros, nothing in plane."""
+    found = forced_figures(folder, inside=0.0, outside=1.0)
+    axes = found["resonance"].axes
+    check([a.get_ylabel() for a in axes] == ["W [m]"], str([a.get_ylabel() for a in axes]))
+    check(np.isclose(np.max(axes[0].lines[0].get_ydata()), 100, rtol=0.2), "W in the resonance diagram")
+    check([line.get_xdata()[0] for line in axes[0].lines[1:]] == [1.0], "natural frequency out of plane")
+    check([a.get_ylabel() for a in found["along"].axes] == ["amplitude [m]", ""], "panels along the cable")
+    check([a.get_ylabel() for a in found["shape"].axes] == ["W [m]", "W [m]"], "panels of the shape")
+    check(np.max(found["shape"].axes[0].lines[1].get_ydata()) > 0.9, "W in the shape")
+    for name, figure in found.items():
+        words = " ".join(legend(figure))
+        check("out of plane" in words and "tension" not in words and "normal" not in words and "in plane" not in words, f"{name}: {words}")
+
+
+def test_cable_forced_in_and_out_of_plane(folder):
+    found = forced_figures(folder, inside=1.0, outside=1.0)
+    axes = found["resonance"].axes
+    check([a.get_ylabel() for a in axes] == ["dynamic tension [kN]", "V [m]", "W [m]"], str([a.get_ylabel() for a in axes]))
+    check([a.lines[-1].get_xdata()[0] for a in axes] == [2.0, 2.0, 1.0], "natural frequencies by plane")
+    check("natural frequency in plane in (a), (b); out of plane in (c)" in legend(found["resonance"]), str(legend(found["resonance"])))
+    check(len(found["along"].axes) == 6 and len(found["along"].axes[0].lines) == 3, "U, V and W along the cable")
+    check([a.get_ylabel() for a in found["shape"].axes] == ["y [m]", "y [m]", "W [m]", "W [m]"], "side view and W")
+    plain = forced_figures(folder)
+    for name, figure in plain.items():
+        check("out of plane" not in " ".join(legend(figure)), f"{name}: {legend(figure)}")
+
+
+def test_cable_forced_at_its_lower_end(folder):
+    """The tension at both ends, whichever moves."""
+    for end in ("lower", "upper"):
+        figure = forced_figures(folder, end=end)["resonance"]
+        check({"at the lower end", "at the upper end"} <= set(legend(figure)), str(legend(figure)))
+        largest = {line.get_color(): np.max(line.get_ydata()) for line in figure.axes[0].lines[:3]}
+        colours = {t.get_text(): h.get_color() for t, h in zip(figure.legends[0].get_texts(), figure.legends[0].get_lines())}
+        check(largest[colours[f"at the {end} end"]] > 1.5 * min(largest.values()), f"{end}: {largest}")
+        check(end_named(figure, end), "the moved end stands above the figure")
+
+
+def end_named(figure, end):
+    return any(f"{end} end moved" in text.get_text() for text in figure.texts)
+
+
+def test_cable_forced_not_at_all(folder):
+    path = os.path.join(folder, "still.h5")
+    catenary_forced(path, inside=0.0, outside=0.0)
+    check_refused(folder, "still.h5", "every displacement and tension is zero")
+
+
+def test_cable_modes_of_one_plane(folder):
+    """The legend names what is there; without modes the message says so."""
+    import figures_catenary_modes
+    from result_file import read
+    path = os.path.join(folder, "one.h5")
+    for gone, there, absent in (("out_of_plane", "in plane", "out of plane"), ("in_plane", "out of plane", "in plane")):
+        catenary_modes(path)
+        with h5py.File(path, "r+") as file:
+            del file[f"shapes/{gone}"]
+        words = " ".join(legend(dict(figures_catenary_modes.figures(read(path)))["modes"]))
+        check(there in words and absent not in words, words)
+    with h5py.File(path, "r+") as file:
+        for name in ("shapes", "modes", "sweep"):
+            del file[name]
+    check_refused(folder, "one.h5", "it has no modes")
+
+
+def test_cable_modes_along_and_deep(folder):
+    """A mode along the cable shows U across it; displacements of a deep cable are a share of its height."""
+    import figures_catenary_modes
+    from result_file import read
+    path = os.path.join(folder, "deep.h5")
+    catenary_modes(path)
+    with h5py.File(path, "r+") as file:
+        shape = file["shapes/in_plane/mode1"]
+        shape["U"][:], shape["V"][:] = shape["V"][:], 0.1 * shape["V"][:]
+    figure = dict(figures_catenary_modes.figures(read(path)))["modes"]
+    first = figure.axes[0]
+    check("longitudinal" in first.get_title(loc="left") and any("drawn across" in text for text in legend(figure)), str(legend(figure)))
+    check(np.isclose(np.max(np.abs(first.lines[2].get_ydata() - first.lines[0].get_ydata())), 8, rtol=0.02), "U across the cable, 8 % of the span")
+    catenary_modes(path)
+    with h5py.File(path, "r+") as file:
+        for mode in (1, 2):
+            file[f"shapes/in_plane/mode{mode}/y"][:] *= 40  # 1000 m deep
+    figure = dict(figures_catenary_modes.figures(read(path)))["modes"]
+    rest, moved = figure.axes[1].lines[:2]
+    largest = np.max(np.hypot(moved.get_xdata() - rest.get_xdata(), moved.get_ydata() - rest.get_ydata()))
+    check(75 < largest < 85 and any("of the height" in text for text in legend(figure)), f"{largest}")
 
 
 def test_hanging_cable_moved(folder):
