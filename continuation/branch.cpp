@@ -44,6 +44,8 @@ const char* to_string(StopReason reason) {
       return "strong_resonance";
     case StopReason::bogdanov_takens:
       return "bogdanov_takens";
+    case StopReason::unbounded:
+      return "unbounded";
     case StopReason::max_points:
       return "max_points";
     case StopReason::min_step:

@@ -32,6 +32,7 @@ enum class StopReason {
   known_branch_point,  ///< started at a branch point
   strong_resonance,    ///< a curve of torus points ends: its multipliers meet at 1 or -1
   bogdanov_takens,     ///< a curve of Hopf points ends: its frequency is zero
+  unbounded,           ///< the state grows beyond any size at a finite parameter value
   max_points,
   min_step,  ///< the corrector failed at the smallest step
   observer,  ///< the observer asked to stop

@@ -13,6 +13,10 @@ constexpr int most_steps = 10;
 // Has a step of this relative size, after the one before it, come to rounding? Steps go on as squares: the next is size (size / previous)^2.
 bool settled(double size, double previous) { return size <= 1e-11 || size * (size / previous) * (size / previous) <= 1e-16; }
 
+// What is left when a factor is split off carries an error of rounding times the size of the matrix squared: too much where both its roots are far
+// smaller.
+bool lost(double p, double q, double size) { return std::max(p * p, std::abs(q)) < 1e-8 * size * size; }
+
 }  // namespace
 
 void quadratic_roots(double p, double q, std::complex<double>& z0, std::complex<double>& z1) {
@@ -75,15 +79,16 @@ bool RealFactors::three(const Matrix& a, std::complex<double>* z) {
   const double c0 = -(d[0] * m00 - d[3] * m01 + d[6] * m02), size = a.norm();
   double previous = 1e-3;
   for (int i = 0; i < most_steps; ++i) {
-    const double p = c2 + t_, q = c1 + t_ * p, f = c0 + t_ * q, slope = q + t_ * (p + t_);
+    const double left = c2 + t_, product = c1 + t_ * left, f = c0 + t_ * product, slope = product + t_ * (left + t_);
     const double step = f / slope;
     t_ -= step;
     if (!std::isfinite(step)) return false;
     const double now = std::abs(step) / size, last = std::exchange(previous, now);
     if (!settled(now, last)) continue;
+    const double p = c2 + t_, q = c1 + t_ * p;
     z[0] = t_;
-    quadratic_roots(c2 + t_, c1 + t_ * (c2 + t_), z[1], z[2]);
-    return true;
+    quadratic_roots(p, q, z[1], z[2]);
+    return !lost(p, q, size);
   }
   return false;
 }
@@ -116,10 +121,10 @@ bool RealFactors::four(const Matrix& a, std::complex<double>* z) {
     if (!settled(now, last)) continue;
     p_before_ = p_here;
     q_before_ = q_here;
-    const double r_end = c3 - p_;
+    const double r_end = c3 - p_, rest = c2 - q_ - p_ * r_end;
     quadratic_roots(p_, q_, z[0], z[1]);
-    quadratic_roots(r_end, c2 - q_ - p_ * r_end, z[2], z[3]);
-    return true;
+    quadratic_roots(r_end, rest, z[2], z[3]);
+    return !lost(p_, q_, size) && !lost(r_end, rest, size);
   }
   return false;
 }

@@ -45,6 +45,7 @@ std::vector<EventKind> EventFinder::changes(const Signature& a, const Signature&
   if (fold) kinds.push_back({EventType::fold, 0});
   for (int k = 0; k < static_cast<int>(curve_.blocks().indices.size()); ++k) {
     const auto slot = static_cast<std::size_t>(k);
+    if (neutral_[slot]) continue;
     const bool turned = a.negative[slot] != b.negative[slot];
     if (k == 0 ? turned != fold : turned) kinds.push_back({EventType::branch_point, k});
     const int pairs = (std::abs(b.unstable[slot] - a.unstable[slot]) - (turned ? 1 : 0)) / 2;
@@ -72,6 +73,7 @@ bool EventFinder::between(const Sample& a, const Sample& b, double sigma, Sample
 std::vector<SpecialPoint>& EventFinder::find(const Sample& before, const Sample& a, const Sample& b, bool last) {
   found_.clear();
   samples_ = 0;
+  note_neutral(before, a, b);
   const bool turned = turns_at(before, a, b), was_changed = changed(before.signature, a.signature), is_changed = changed(a.signature, b.signature);
   // The neighbours of a step with an event are searched as it is itself: there two more may cancel, and nothing seems to turn.
   if (!was_changed && turned) look_closer(b, before, a, 0);  // b only tells how much things moved
@@ -86,7 +88,7 @@ std::vector<SpecialPoint>& EventFinder::find(const Sample& before, const Sample&
 void EventFinder::explain(const Sample& a, const Sample& b, int depth) {
   const auto kinds = changes(a.signature, b.signature);
   if (kinds.empty()) {
-    if (a.signature.unstable != b.signature.unstable) report_unresolved(a, b);
+    if (unstable_changed(a.signature, b.signature)) report_unresolved(a, b);
     // Beside an event two more may cancel: its own step is the last that looks here.
     else if (curve_.length(b.u - a.u) > 1e-5) look_closer(a, a, b, beside());
     return;
@@ -102,6 +104,24 @@ void EventFinder::explain(const Sample& a, const Sample& b, int depth) {
     return;
   }
   if (!locate_multiple(a, b)) report_unresolved(a, b);
+}
+
+bool EventFinder::unstable_changed(const Signature& a, const Signature& b) const {
+  for (std::size_t k = 0; k < a.unstable.size(); ++k)
+    if (a.unstable[k] != b.unstable[k] && !neutral_[k]) return true;
+  return false;
+}
+
+void EventFinder::note_neutral(const Sample& before, const Sample& a, const Sample& b) {
+  for (int k = 0; k < curve_.parts(); ++k) neutral_[static_cast<std::size_t>(k)] = neutral(before, k) && neutral(a, k) && neutral(b, k);
+}
+
+// Is a growth rate zero but for rounding? If it is so all along, as without damping, its changes of sign are no events.
+bool EventFinder::neutral(const Sample& s, int block) const {
+  constexpr double nothing = 1e-11;
+  if (!curve_.problem().is_flow()) return false;
+  const auto& rates = s.rates[static_cast<std::size_t>(block)];
+  return std::min(std::abs(rates.ranked(rates.positive())), std::abs(rates.ranked(rates.positive() + 1))) < nothing * rates.size();
 }
 
 // An even number of real eigenvalues through zero at one point: no determinant changes sign, but the bracket has shrunk on it.
@@ -138,7 +158,8 @@ void EventFinder::report_unresolved(const Sample& a, const Sample& b) {
 }
 
 // Does something that decides over events come nearer to zero and recede again, nearer than it moved?
-bool EventFinder::turns_at(const Sample& before, const Sample& a, const Sample& b) const {
+bool EventFinder::turns_at(const Sample& before, const Sample& a, const Sample& b) {
+  note_neutral(before, a, b);
   return !all_next_to_zero(a, [&](const TestFunction& t) {
     const double past = value(before, t), from = value(a, t), to = value(b, t), p = std::abs(past), f = std::abs(from), q = std::abs(to);
     return !(f <= p && f <= q && f < std::max(std::abs(from - past), std::abs(to - from)) && past * from > 0.0 && from * to > 0.0);

@@ -36,7 +36,7 @@ class EventFinder {
   /// turned round at a near zero, the steps on both sides of a are searched. `last`: no further point will show a turn at b, so look now.
   /// Valid until the next call.
   std::vector<SpecialPoint>& find(const Sample& before, const Sample& a, const Sample& b, bool last = false);
-  bool turns_at(const Sample& before, const Sample& a, const Sample& b) const;
+  bool turns_at(const Sample& before, const Sample& a, const Sample& b);
 
   /// Drops the folds that the turn of a branch upright at its branch point looks like, where rounding had both found apart.
   void drop_turns_at_branch_points(std::vector<SpecialPoint>& special) const;
@@ -44,8 +44,11 @@ class EventFinder {
  private:
   std::vector<EventKind> changes(const Signature& a, const Signature& b) const;
   void multiplier_changes(const Signature& a, const Signature& b, std::vector<EventKind>& kinds) const;
-  bool changed(const Signature& a, const Signature& b) const { return a.unstable != b.unstable || !changes(a, b).empty(); }
+  bool changed(const Signature& a, const Signature& b) const { return unstable_changed(a, b) || !changes(a, b).empty(); }
+  bool unstable_changed(const Signature& a, const Signature& b) const;
   void explain(const Sample& a, const Sample& b, int depth);
+  bool neutral(const Sample& s, int block) const;
+  void note_neutral(const Sample& before, const Sample& a, const Sample& b);
   /// What is left of a step beside an event: searched unless everything goes its way quietly.
   void explain_rest(const Sample& a, const Sample& left, const Sample& right, const Sample& b, int depth);
   template <class Slope>
@@ -63,6 +66,7 @@ class EventFinder {
   bool all_next_to_zero(const Sample& here, const F& f) const {
     if (!f(TestFunction{-1, 0})) return false;
     for (int k = 0; k < curve_.parts(); ++k) {
+      if (neutral_[static_cast<std::size_t>(k)]) continue;
       const auto& rates = here.rates[static_cast<std::size_t>(k)];
       const int last = std::min(rates.positive() + 3, rates.count());
       for (int rank = std::max(1, rates.positive() - 2); rank <= last; ++rank) {
@@ -92,7 +96,8 @@ class EventFinder {
   Curve& curve_;
   EventOptions options_;
   std::vector<SpecialPoint> found_;
-  int samples_ = 0;  // of the step at hand
+  int samples_ = 0;                                                               // of the step at hand
+  std::array<bool, std::tuple_size_v<decltype(Signature::unstable)>> neutral_{};  // blocks whose events in this step would be rounding
 };
 
 }  // namespace whirl::continuation

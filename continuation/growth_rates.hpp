@@ -11,8 +11,10 @@ namespace whirl::continuation {
 class GrowthRates {
  public:
   GrowthRates() { clear(); }
-  void clear() {
+  /// `size`: of the matrix they belong to; 1 for multipliers.
+  void clear(double size = 1.0) {
     positive_ = count_ = 0;
+    size_ = size;
     above_.fill(std::numeric_limits<double>::infinity());
     below_.fill(-std::numeric_limits<double>::infinity());
   }
@@ -29,6 +31,7 @@ class GrowthRates {
   }
   int positive() const { return positive_; }
   int count() const { return count_; }
+  double size() const { return size_; }
   /// The r-th largest, r >= 1; infinite where there is none or more than three others stand between it and zero.
   double ranked(int r) const {
     const int up = positive_ - r, down = r - positive_ - 1;
@@ -39,6 +42,7 @@ class GrowthRates {
  private:
   static constexpr int kept = 4;  // on either side: as many as two pairs that cross at once
   int positive_ = 0, count_ = 0;
+  double size_ = 1.0;
   std::array<double, kept> above_, below_;  // nearest first
 };
 

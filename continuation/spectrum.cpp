@@ -41,6 +41,7 @@ bool Spectrum::compute(MatrixIn jacobian) {
     const int m = static_cast<int>(indices.size());
     Matrix& a = block_[k];
     double* to = a.data();
+    double largest = 0.0;
     if (block_.size() == 1) {  // no symmetry: everything, in order
       const double* from = jacobian.data();
       const auto skip = jacobian.outerStride() - m;
@@ -59,7 +60,8 @@ bool Spectrum::compute(MatrixIn jacobian) {
       eigenvalues_.segment(first, m) = solver_[k]->eigenvalues();
       if (few) factors_[k].restart(eigenvalues_.data() + first, m);
     }
-    rates_[k].clear();
+    for (int i = 0; i < m * m; ++i) largest = std::max(largest, std::abs(a.data()[i]));
+    rates_[k].clear(m * largest);
     for (int i = first; i < first + m; ++i) {
       const std::complex<double> z = eigenvalues_[i];
       if (!std::isfinite(z.real() + z.imag())) return false;

@@ -8,6 +8,7 @@ namespace whirl::continuation {
 namespace {
 
 constexpr int largest_searched = 64;  // unknowns; the search costs some hundred factorisations
+constexpr int largest_kernel = 5;     // dimensions: 5^5 starts
 
 // Newton on r(u) = 0, |u - u0| = radius, from a point of that sphere.
 bool solve_on_sphere(const Problem& f, const Vector& u0, double radius, Vector& u) {
@@ -59,16 +60,20 @@ Matrix multiple_kernel(const Problem& f, In u) {
   if (!f.is_flow() || n < 2 || n > largest_searched) return {};
   Matrix j(n, n + 1), around(n, n + 1);
   f.jacobian(u, j);
-  double usual = j.norm();
+  std::vector<double> sizes;
   for (int i = 0; i <= n; ++i) {  // at the point itself all of it may vanish
     Vector beside = u;
     beside[i] += 0.1 * (1.0 + std::abs(u[i]));
     f.jacobian(beside, around);
-    if (around.allFinite()) usual = std::max(usual, around.norm());
+    if (around.allFinite()) sizes.push_back(around.norm());
   }
+  if (!j.allFinite() || sizes.empty()) return {};
+  std::nth_element(sizes.begin(), sizes.begin() + sizes.size() / 2, sizes.end());
+  const double usual = std::max(j.norm(), sizes[sizes.size() / 2]);
   const Eigen::JacobiSVD<Matrix> svd(j, Eigen::ComputeFullV);
   const auto rank = (svd.singularValues().array() > 1e-6 * usual).count();
-  return n + 1 - rank > 2 ? Matrix(svd.matrixV().rightCols(n + 1 - rank)) : Matrix();
+  const auto dimensions = n + 1 - rank;
+  return dimensions > 2 && dimensions <= largest_kernel ? Matrix(svd.matrixV().rightCols(dimensions)) : Matrix();
 }
 
 }  // namespace

@@ -52,8 +52,9 @@ struct Walker::State {
   Eigen::VectorXcd eigenvalues;  // of `next`, kept while events are looked for
   Curve::Report report;
   double step, step_taken = 0.0, arclength = 0.0, largest_x = 0.0;
-  double factor = 1.0;  // by which the next step may change
-  double max_turn;      // between successive tangents of unit length
+  double unbounded = 0.0;  // a state of this size
+  double factor = 1.0;     // by which the next step may change
+  double max_turn;         // between successive tangents of unit length
   int accepted = 0;
   int refinements = 0;  // of the step at hand, for the sake of events
   bool scale_from_slope = false;
@@ -173,6 +174,7 @@ bool Walker::begin(const Vector& u0, const Vector& direction, bool from_branch_p
     s.branch.append(s.now->u, s.now->tangent, 0.0, s.now->residual, 0.0, s.now->iterations, s.now->signature.total_unstable(),
                     &s.curve.eigenvalues());
   }
+  s.unbounded = 1e6 * std::max(1.0, s.curve.x_scale());
   *s.before = *s.now;
   s.start_u = s.now->u;
   s.start_tangent = s.now->tangent;
@@ -465,8 +467,16 @@ void Walker::accept() {
   s.has_signature = true;
   ++s.accepted;
   keep_scale();
+  if (s.stop == StopReason::none && s.largest_x > s.unbounded) s.stop = StopReason::unbounded;
+  if (s.stop == StopReason::none && creeps_to_bound()) s.stop = StopReason::parameter_bound;
   if (s.stop == StopReason::none && s.branch.points() == s.branch.capacity()) s.stop = StopReason::max_points;
   if (s.stop == StopReason::none && s.observer && *s.observer && !(*s.observer)(s.branch, s.branch.points() - 1)) s.stop = StopReason::observer;
+}
+
+// Does the parameter tend to an end of its range without ever reaching it?
+bool Walker::creeps_to_bound() const {
+  const double p = s_->now->u[problem_.size()], towards = s_->now->tangent[problem_.size()], next_to = 1e-12 * (options_.upper - options_.lower);
+  return (towards < 0.0 && p - options_.lower < next_to) || (towards > 0.0 && options_.upper - p < next_to);
 }
 
 // x is measured by the largest met so far; until the parameter has moved, a start at rest knows only the slope it had there.

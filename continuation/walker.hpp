@@ -67,6 +67,7 @@ class Walker {
   struct State;
   bool begin(const Vector& u0, const Vector& direction, bool from_branch_point);
   bool can_continue() const;
+  bool creeps_to_bound() const;
   void predict();
   bool correct();
   void shorten_step();
