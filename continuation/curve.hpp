@@ -101,6 +101,7 @@ class Curve {
   /// Eigenvalues of r_x or Floquet multipliers at the point last classified; empty if the problem has neither.
   const Eigen::VectorXcd& eigenvalues() const { return f_.is_flow() ? spectrum_.eigenvalues() : eigenvalues_; }
   /// Test functions of the point last classified.
+  void copy_spectrum(Sample& to) const;  ///< rates and kappa of the last point classified
   void copy_rates(Sample& to) const { std::copy_n(rates_.begin(), parts_, to.rates.begin()); }
   static int spectrum_size(const Problem& f);
   /// The problem as one of periodic motions; null if it is none.
@@ -118,7 +119,6 @@ class Curve {
   void guess(const Sample& a, const Sample& b, double sigma, Sample& out) const;
 
  private:
-  void copy_spectrum(Sample& to) const;
   void interpolate(const Sample& a, const Sample& b, double sigma, Vector& u) const;
   void border();
   void spread(const Vector& from, double scale, Out answer) const;

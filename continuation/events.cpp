@@ -118,10 +118,12 @@ void EventFinder::note_neutral(const Sample& before, const Sample& a, const Samp
 
 // Is a growth rate zero but for rounding? If it is so all along, as without damping, its changes of sign are no events.
 bool EventFinder::neutral(const Sample& s, int block) const {
-  constexpr double nothing = 1e-11;
   if (!curve_.problem().is_flow()) return false;
-  const auto& rates = s.rates[static_cast<std::size_t>(block)];
-  return std::min(std::abs(rates.ranked(rates.positive())), std::abs(rates.ranked(rates.positive() + 1))) < nothing * rates.size();
+  const auto slot = static_cast<std::size_t>(block);
+  const auto& rates = s.rates[slot];
+  // Of a pair next to its own frequency: beside a far faster eigenvalue the size of the matrix says little.
+  const double pair = s.kappa[slot], nothing = pair > 0.0 ? std::min(1e-11 * rates.size(), 1e-9 * std::sqrt(pair)) : 1e-13 * rates.size();
+  return std::min(std::abs(rates.ranked(rates.positive())), std::abs(rates.ranked(rates.positive() + 1))) < nothing;
 }
 
 // An even number of real eigenvalues through zero at one point: no determinant changes sign, but the bracket has shrunk on it.

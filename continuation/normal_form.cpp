@@ -110,8 +110,9 @@ void set_normal_form(const Problem& f, SpecialPoint& point, const Vector& sense,
     const Eigen::MatrixXcd A = a.cast<std::complex<double>>();
     const ComplexVector b11 = A.partialPivLu().solve(forms.B(q, ComplexVector(q.conjugate())));
     const ComplexVector b20 = (2.0 * target * Eigen::MatrixXcd::Identity(n, n) - A).partialPivLu().solve(forms.B(q, q));
-    const std::complex<double> sum = p.dot(forms.C_qqq(q)) - 2.0 * p.dot(forms.B(q, b11)) + p.dot(forms.B(ComplexVector(q.conjugate()), b20));
-    point.coefficient = sum.real() / (2.0 * point.frequency);
+    const std::complex<double> parts[] = {p.dot(forms.C_qqq(q)), -2.0 * p.dot(forms.B(q, b11)), p.dot(forms.B(ComplexVector(q.conjugate()), b20))};
+    const double sum = (parts[0] + parts[1] + parts[2]).real(), size = std::abs(parts[0]) + std::abs(parts[1]) + std::abs(parts[2]);
+    point.coefficient = std::abs(sum) > 1e-12 * size ? sum / (2.0 * point.frequency) : 0.0;  // a degenerate point is not told from rounding
     point.has_coefficient = std::isfinite(point.coefficient);
     point.null_vector = q.real();
     point.null_vector_im = q.imag();

@@ -20,6 +20,30 @@ void two_by_two(const Matrix& a, std::complex<double>& z0, std::complex<double>&
   z1 = large == 0.0 ? 0.0 : det / large;
 }
 
+// Scales rows and columns by powers of two until they are of like size (Parlett and Reinsch): eigenvalues far smaller than the matrix keep their
+// digits where rows and columns differ by decades.
+void balance(Matrix& a) {
+  for (bool scaled = true; scaled;) {
+    scaled = false;
+    for (Eigen::Index i = 0; i < a.rows(); ++i) {
+      double row = 0.0, column = 0.0, f = 1.0;
+      for (Eigen::Index k = 0; k < a.rows(); ++k) {
+        if (k == i) continue;
+        row += std::abs(a(i, k));
+        column += std::abs(a(k, i));
+      }
+      if (!(column > 0.0 && row > 0.0) || !std::isfinite(column + row)) continue;
+      const double sum = column + row;
+      for (; column < 0.5 * row; column *= 4.0) f *= 2.0;
+      for (; column > 2.0 * row; column *= 0.25) f *= 0.5;
+      if (!(column + row < 0.95 * sum * f)) continue;
+      a.col(i) *= f;
+      a.row(i) /= f;
+      scaled = true;
+    }
+  }
+}
+
 }  // namespace
 
 Spectrum::Spectrum(const Blocks& blocks) : blocks_(&blocks), rates_(blocks.indices.size()) {
@@ -55,6 +79,7 @@ bool Spectrum::compute(MatrixIn jacobian) {
     if (m == 2) two_by_two(a, eigenvalues_[first], eigenvalues_[first + 1]);
     const bool few = m == 3 || m == 4;
     if (m > 2 && !(few && factors_[k].eigenvalues(a, eigenvalues_.data() + first))) {
+      balance(a);
       solver_[k]->compute(a, false);
       if (solver_[k]->info() != Eigen::Success) return false;
       eigenvalues_.segment(first, m) = solver_[k]->eigenvalues();

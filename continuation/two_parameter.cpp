@@ -103,8 +103,10 @@ class Follower {
   void add_other_blocks(std::vector<Test>& all) const;
   Test double_root() const;
   Vector base(In y) const { return system_->base_point(y); }
-  double crossing_pair(In y, double kappa = 0.0) const;  // real part of the pair nearest the axis, away from the critical one
-  double crossing_real(In y) const;
+  Eigen::VectorXcd others(In y) const;  // eigenvalues but for the critical one, or the critical pair
+  double crossing_pair(In y) const;     // zero where a pair of them is on the axis
+  double crossing_real(In y) const;     // zero where one of them is
+  bool is_crossing(In y, const std::string& type) const;
   bool mirrored(const Vector& a, const Vector& b) const;  // did the part that breaks a symmetry pass zero between a and b?
   bool past_strong_resonance(In y) const;
   bool dissolved(In y) const;             // a branch point of r + beta b0 = 0 only
@@ -147,26 +149,50 @@ SpecialPoint Follower::at(In y) const {
   return s;
 }
 
-double Follower::crossing_pair(In y, double kappa) const {
+Eigen::VectorXcd Follower::others(In y) const {
   Matrix j(f_.size(), f_.size() + 2);
   f_.jacobian(base(y), j);
-  double best = std::nan("");
   const Eigen::VectorXcd e = Eigen::EigenSolver<Matrix>(j.leftCols(f_.size()), false).eigenvalues();
-  Eigen::Index critical = -1;  // a curve of Hopf points has a pair on the axis all along
-  if (kappa > 0.0) (e.array() - std::complex<double>(0.0, std::sqrt(kappa))).abs().minCoeff(&critical);
+  const auto* hopf = dynamic_cast<const HopfSystem*>(system_.get());
+  const std::complex<double> critical(0.0, hopf ? std::sqrt(std::max(0.0, hopf->kappa(y))) : 0.0);
+  std::vector<std::complex<double>> rest(e.begin(), e.end());
+  for (const auto& z : {critical, std::conj(critical)}) {
+    if (rest.empty() || (!hopf && rest.size() < static_cast<std::size_t>(e.size()))) break;
+    rest.erase(std::min_element(rest.begin(), rest.end(), [&](const auto& p, const auto& q) { return std::abs(p - z) < std::abs(q - z); }));
+  }
+  return Eigen::Map<const Eigen::VectorXcd>(rest.data(), static_cast<Eigen::Index>(rest.size()));
+}
+
+// Products, not the eigenvalue nearest to zero: that may be born from a complex pair on the way. Each factor over its size, so that many of them stay
+// in range.
+double Follower::crossing_pair(In y) const {
+  const Eigen::VectorXcd e = others(y);
+  if (e.size() < 2) return std::nan("");
+  std::complex<double> product = 1.0;
   for (Eigen::Index k = 0; k < e.size(); ++k)
-    if (k != critical && e[k].imag() > 1e-9 && !(std::abs(e[k].real()) > std::abs(best))) best = e[k].real();
-  return best;
+    for (Eigen::Index l = 0; l < k; ++l) product *= (e[k] + e[l]) / (std::abs(e[k]) + std::abs(e[l]));
+  return product.real();
 }
 
 double Follower::crossing_real(In y) const {
-  Matrix j(f_.size(), f_.size() + 2);
-  f_.jacobian(base(y), j);
-  double best = std::nan("");
-  const Eigen::VectorXcd e = Eigen::EigenSolver<Matrix>(j.leftCols(f_.size()), false).eigenvalues();
-  for (const auto& z : e)
-    if (z.imag() == 0.0 && !(std::abs(z.real()) > std::abs(best))) best = z.real();
-  return best;
+  const Eigen::VectorXcd e = others(y);
+  if (e.size() < 1) return std::nan("");
+  const double size = e.cwiseAbs().maxCoeff();
+  std::complex<double> product = 1.0;
+  for (const auto& z : e) product *= z / size;
+  return product.real();
+}
+
+// At a zero of the test functions: are they on the axis indeed? Two real eigenvalues of opposite sign cancel as well, and at a Bogdanov-Takens point
+// the curve's own pair is a double zero.
+bool Follower::is_crossing(In y, const std::string& type) const {
+  const Eigen::VectorXcd e = others(y);
+  constexpr double near = 1e-4;
+  const auto* hopf = dynamic_cast<const HopfSystem*>(system_.get());
+  const double size = std::max(e.size() > 0 ? e.cwiseAbs().maxCoeff() : 0.0, hopf ? std::sqrt(std::abs(hopf->kappa(y))) : 0.0);
+  if (hopf && !(hopf->kappa(y) > near * near * size * size)) return false;
+  if (hopf && type == "ZH") return e.size() > 0 && e.cwiseAbs().minCoeff() < near * size;
+  return std::any_of(e.begin(), e.end(), [&](const auto& z) { return z.imag() > near * size && std::abs(z.real()) < near * z.imag(); });
 }
 
 // A curve of torus points ends where its multipliers meet at 1 or -1; beyond, the same curve runs back with the frequency mirrored.
@@ -239,7 +265,7 @@ std::vector<Test> Follower::tests() const {
     all.push_back({"BT", [hopf](In y) { return hopf->kappa(y); }});
     all.push_back({"GH", coefficient});
     all.push_back({"ZH", [this](In y) { return crossing_real(y); }});
-    if (f_.size() >= 4) all.push_back({"HH", [this, hopf](In y) { return crossing_pair(y, hopf->kappa(y)); }});
+    if (f_.size() >= 4) all.push_back({"HH", [this](In y) { return crossing_pair(y); }});
   }
   return all;
 }
@@ -282,6 +308,7 @@ void Follower::locate(const Branch& b, int i, const Test& test, double from, dou
   }
   // A pole changes sign as well; at a zero the function is small next to what it was at the ends.
   if (std::abs(test.value(m.u)) > 1e-3 * std::max(std::abs(from), std::abs(to))) return;
+  if ((test.type == "ZH" || test.type == "HH") && !is_crossing(m.u, test.type)) return;
   // At a Bogdanov-Takens point the first Lyapunov coefficient ends.
   if (const auto* hopf = dynamic_cast<const HopfSystem*>(system_.get());
       hopf && test.type == "GH" && hopf->kappa(m.u) < 1e-6 * std::max(std::abs(hopf->kappa(a.u)), std::abs(hopf->kappa(d.u))))
@@ -389,6 +416,7 @@ DefiningCurve Follower::run(double p2, const Observer& observer) {
   // Folds of the curve in the second parameter, found by the walker itself: thresholds.
   for (const auto& s : b.special) {
     if (s.type != EventType::fold) continue;
+    if (const auto* hopf = dynamic_cast<const HopfSystem*>(system_.get()); hopf && !(hopf->kappa(s.u) > 0.0)) continue;  // of neutral saddles
     CodimensionTwo e;
     e.type = b.points() > 0 && s.u[s.u.size() - 1] <= s.bracket[0] + 0.0 ? "MIN" : "MAX";
     e.u = base(s.u);

@@ -236,7 +236,7 @@ bool Walker::correct() {
   // Newton has gone sideways by half the step or more: to another part of the curve, though it may run the same way there.
   if (s.step_taken > 1.12 * s.step && !first_off_branch_point && s.step > 4.0 * options_.min_step) return false;
   if (!s.curve.classify(s.next->u, s.next->tangent, s.next->signature)) return false;  // last: eigenvalues cost most
-  s.curve.copy_rates(*s.next);
+  s.curve.copy_spectrum(*s.next);
   s.eigenvalues = s.curve.eigenvalues();
   s.next->residual = s.report.residual;
   s.next->iterations = s.report.iterations;

@@ -28,7 +28,14 @@ class AveragedSource : public EquilibriumSource {
   }
   double value(const std::string& lens) const override { return forced_lens_value(c_, lens); }
   std::string unit(const std::string& lens) const override { return forced_system_of(c_, {lens}).lens_units.front(); }
-  std::vector<std::string> warnings() const override { return check_forced_system(c_); }
+  std::vector<std::string> warnings() const override {
+    auto all = check_forced_system(c_);
+    for (auto& w : dropped_forces(forced_, ansatz_)) all.push_back(std::move(w));
+    return all;
+  }
+  std::vector<Branch> marked(const std::vector<Branch>& branches, RunContext& context) const override {
+    return with_fast_marked(forced_, ansatz_, branches, context);
+  }
   void check_lens(const std::string& key, const std::string& lens, const std::string& range_key, double lower, double upper) const override {
     check_forced_lens(c_, key, lens, range_key, lower, upper);
   }

@@ -6,6 +6,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <regex>
+#include <set>
 
 namespace whirl::studies {
 namespace {
@@ -29,6 +31,16 @@ std::string json_text(const std::string& s) {
 std::string ends(const Branch& b) { return fmt::format("{}, {}", to_string(b.start_reason), to_string(b.stop_reason)); }
 
 }  // namespace
+
+bool is_own_column(const std::string& name) {
+  static const std::set<std::string> own = {
+      "branch",          "label",          "type",       "subtype",   "criticality",       "point",         "period",
+      "unstable_before", "unstable_after", "n_unstable", "frequency", "coefficient",       "arclength",     "residual",
+      "bracket_lower",   "bracket_upper",  "bracket",    "step",      "newton_iterations", "stable_before", "stable_after",
+      "curve",           "stable"};
+  static const std::regex eigenvalue("(eig|mu)[0-9]+_(re|im)");
+  return own.contains(name) || std::regex_match(name, eigenvalue);
+}
 
 std::string harmonic_name(const std::string& coordinate, double k) { return fmt::format("{}_h{:g}", coordinate, k); }
 

@@ -36,6 +36,9 @@ struct BranchOutput {
 /// "q1_h2", "z3_h0.5": harmonic k, in multiples of the excitation frequency, of a coordinate.
 std::string harmonic_name(const std::string& coordinate, double k);
 
+/// Is it a column that every table of branches, special points or curves has? No quantity of a model may be named so.
+bool is_own_column(const std::string& name);
+
 /// "LP", "BP", ...: with its running number on the branch, "LP2".
 std::string label(const continuation::Branch& branch, std::size_t special);
 

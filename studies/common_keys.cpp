@@ -124,6 +124,8 @@ continuation::NetworkOptions network_of(const Configuration& c) {
   if (o.walk.min_step > o.walk.max_step) throw c.error("continuation.min_step", "must not exceed continuation.max_step");
   o.walk.max_points = static_cast<int>(c.integer("continuation.max_points"));
   o.walk.user_values = c.numbers("continuation.user_values");
+  for (const double p : o.walk.user_values)
+    if (!(p >= range[0] && p <= range[1])) throw c.error("continuation.user_values", "each value must lie in continuation.range");
   o.depth = static_cast<int>(c.integer("continuation.depth"));
   return o;
 }

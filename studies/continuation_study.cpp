@@ -38,6 +38,7 @@ Schema schema() {
 Setup setup(const Configuration& c) {
   Setup s;
   s.source = equilibrium_source(c);
+  check_parameter_given(c, "continuation.parameter");
   s.parameter = c.text("continuation.parameter");
   s.network = network_of(c);
   s.source->check_lens("continuation.parameter", s.parameter, "continuation.range", s.network.walk.lower, s.network.walk.upper);
@@ -48,6 +49,9 @@ Setup setup(const Configuration& c) {
     throw c.error("continuation.seeds", fmt::format("must hold groups of {} numbers: the variables, then {}", width, s.parameter));
   for (std::size_t i = 0; i < seeds.size(); i += width)
     s.seeds.emplace_back(seeds.begin() + static_cast<std::ptrdiff_t>(i), seeds.begin() + static_cast<std::ptrdiff_t>(i + width));
+  for (const auto& seed : s.seeds)
+    if (!(seed.back() >= s.network.walk.lower && seed.back() <= s.network.walk.upper))
+      throw c.error("continuation.seeds", fmt::format("the {} of each must lie in continuation.range", s.parameter));
   for (const double p : c.numbers("continuation.deflate_at"))
     if (p < s.network.walk.lower || p > s.network.walk.upper) throw c.error("continuation.deflate_at", "each value must lie in continuation.range");
   return s;
@@ -110,14 +114,15 @@ ExitStatus run(const Configuration& c, RunContext& context) {
     file.flush();
   });
   explore(*f, s, net, c.numbers("continuation.deflate_at"), context);
-  output.write_special_points(file, net.branches());
+  const auto branches = s.source->marked(net.branches(), context);
+  output.write_special_points(file, branches);
   file.flush();
   if (const auto left = net.not_followed(); !left.empty() && !net.stopped() && s.network.depth > 0)
     context.warn(fmt::format("branches at {} are not followed: continuation.depth is {}", fmt::join(left, ", "), s.network.depth));
   context.progress.clear();
-  if (context.json) fmt::print("{}", output.json(net.branches()));
-  if (!context.quiet) fmt::print(stderr, "{}", output.text(net.branches()));
-  return finish(file, context, net.branches());
+  if (context.json) fmt::print("{}", output.json(branches));
+  if (!context.quiet) fmt::print(stderr, "{}", output.text(branches));
+  return finish(file, context, branches);
 }
 
 }  // namespace

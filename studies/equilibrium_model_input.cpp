@@ -3,6 +3,9 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
+
+#include "studies/branch_output.hpp"
 #include "studies/section_reader.hpp"
 
 namespace whirl::studies {
@@ -41,6 +44,17 @@ EquilibriumModel equilibrium_model_of(const Configuration& c) {
   if (model.rhs.size() != n) throw m.error("rhs", fmt::format("must be an array of {} expressions, one for each variable", n));
   if (model.initial.size() != n) throw m.error("initial", fmt::format("must be an array of {} numbers, one for each variable", n));
   if (model.mirrors.size() > 3) throw m.error("mirrors", "must be at most 3");
+  const auto check_name = [&](const std::string& key, const std::string& name) {
+    if (is_own_column(name)) throw m.error(key, fmt::format("'{}' is a column of the results: choose another name", name));
+  };
+  const auto names = model.parameter_names();
+  for (const auto& name : model.variables) check_name("variables", name);
+  for (const auto& name : names) check_name("parameters", name);
+  for (const auto& a : model.amplitudes) {
+    check_name("amplitudes", a.name);
+    if (std::find(names.begin(), names.end(), a.name) != names.end())
+      throw m.error("amplitudes", fmt::format("'{}' is a parameter: choose another name", a.name));
+  }
   try {
     model.validate();
   } catch (const std::invalid_argument& e) {
@@ -53,7 +67,9 @@ EquilibriumModel equilibrium_model_of(const Configuration& c) {
     tried.residual(Eigen::Map<const Vector>(model.initial.data(), r.size()), r);
     if (!r.allFinite()) throw m.error("initial", "must be a point where every expression of rhs is finite");
   } catch (const models::ExpressionError& e) {
-    if (e.equation == 0) throw m.error("variables", e.reason);
+    const bool of_parameter =
+        std::any_of(names.begin(), names.end(), [&](const std::string& p) { return e.reason.find("'" + p + "'") != e.reason.npos; });
+    if (e.equation == 0) throw m.error(of_parameter ? "parameters" : "variables", e.reason);
     throw m.error("rhs", fmt::format("expression {}: {}", e.equation, e.reason));
   } catch (const std::invalid_argument& e) {
     throw m.error(model.mirrors.empty() ? "variables" : "mirrors", e.what());

@@ -209,6 +209,11 @@ void add_equilibrium_source_keys(Schema& s) {
   s.add_alternative({.sections = {"response"}, .free_sections = {"modal_model"}});
 }
 
+void check_parameter_given(const Configuration& c, const std::string& key) {
+  if (!c.has("equilibrium_model") || c.is_given(key)) return;
+  throw InputError(fmt::format("{}: {} is missing: one of {}", c.source(), key, fmt::join(equilibrium_model_of(c).parameter_names(), ", ")));
+}
+
 std::unique_ptr<EquilibriumSource> equilibrium_source(const Configuration& c) {
   if (c.has("equilibrium_model")) return std::make_unique<ExpressionSource>(c);
   if (c.text("ansatz.kind") != own_ansatz) return averaged_source(c);

@@ -41,12 +41,16 @@ class EquilibriumSource {
   /// Points near solutions, in the order in which they are to be tried; f has one free parameter.
   virtual std::vector<Start> starts(const Problem& f, const std::string& lens, double lower, double upper) const = 0;
   virtual void write(ResultFile& file) const = 0;
+  /// The branches as they are to be told: special points that the source does not stand for are marked, and that is warned of.
+  virtual std::vector<continuation::Branch> marked(const std::vector<continuation::Branch>& branches, RunContext&) const { return branches; }
 };
 
 /// [cable] and what belongs to it, or [modal_model], with response.order or [ansatz]; or [equilibrium_model].
 void add_equilibrium_source_keys(Schema& schema);
 std::unique_ptr<EquilibriumSource> equilibrium_source(const Configuration& c);
 
+/// A model given as expressions has no parameter by default: InputError that names those there are, if `key` is left out.
+void check_parameter_given(const Configuration& c, const std::string& key);
 /// The observables that continuation.peaks names.
 std::vector<continuation::Observable> peaks_of(const Configuration& c, const EquilibriumSource& source);
 /// A start that leads nowhere is told, not fatal.

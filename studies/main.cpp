@@ -29,6 +29,8 @@ ExitStatus run(const std::string& file, const std::vector<std::string>& override
   context.quiet = quiet;
   const StudyKind& kind = study_kind(configuration.kind());
   if (kind.check) (void)kind.check(configuration);  // bad input before anything is written
+  std::error_code ignored;
+  if (fs::equivalent(context.output, file, ignored)) throw InputError(fmt::format("{}: is the study file itself, not a place for results", file));
   ResultFile::check_writable(context.output);
   catch_interrupts();
   ExitStatus status;

@@ -136,4 +136,37 @@ Vector symmetric_to_the_bit(const Problem& f, Vector u) {
   return u;
 }
 
+// Copies of one Floquet exponent stand omega/nu apart, so none needs a frequency above omega/(2 nu); averaging of first order holds for exponents
+// well below that.
+std::vector<continuation::Branch> with_fast_marked(const ForcedSystem& forced, const Ansatz& ansatz,
+                                                   const std::vector<continuation::Branch>& branches, RunContext& context) {
+  std::vector<continuation::Branch> marked = branches;
+  int count = 0;
+  for (auto& b : marked)
+    for (auto& special : b.special) {
+      const double omega = forced.at(special.u.tail(1)).omega;
+      if (special.type != continuation::EventType::hopf || special.frequency <= 0.25 * omega / ansatz.nu) continue;
+      special.subtype = "fast";
+      ++count;
+    }
+  if (count > 0)
+    context.warn(
+        fmt::format("{} Hopf points marked \"fast\" have a frequency above omega/(4 nu): first-order averaging does not hold for them, trust "
+                    "Floquet multipliers there",
+                    count));
+  return marked;
+}
+
+std::vector<std::string> dropped_forces(const ForcedSystem& forced, const Ansatz& ansatz) {
+  std::vector<std::string> warnings;
+  if (ansatz.frozen) return warnings;
+  for (const auto& force : forced.at(Vector::Ones(static_cast<Eigen::Index>(forced.lens_units.size()))).forces) {
+    const auto& kept = ansatz.harmonics[static_cast<std::size_t>(force.equation)];
+    if (std::find(kept.begin(), kept.end(), force.harmonic * ansatz.nu) != kept.end()) continue;
+    warnings.push_back(fmt::format("the force on {} at harmonic {} is outside the ansatz and left out",
+                                   forced.coordinates[static_cast<std::size_t>(force.equation)], force.harmonic));
+  }
+  return warnings;
+}
+
 }  // namespace whirl::studies

@@ -4,6 +4,7 @@
 #include "models/slow_flow/ansatz.hpp"
 #include "studies/branch_output.hpp"
 #include "studies/forced_system.hpp"
+#include "studies/run_context.hpp"
 
 namespace whirl::studies {
 
@@ -27,5 +28,11 @@ std::vector<PointColumn> harmonic_columns(const ForcedSystem& forced, const mode
 std::string motion_prefix(const ForcedSystem& forced, const models::Ansatz& ansatz, const continuation::Branch& branch);
 /// A solution symmetric but for rounding is made so to the last bit: the walker tells symmetric branches by exact zeros.
 Vector symmetric_to_the_bit(const Problem& f, Vector u);
+
+/// Hopf points faster than first-order averaging holds for get the subtype "fast", and a warning says so.
+std::vector<continuation::Branch> with_fast_marked(const ForcedSystem& forced, const models::Ansatz& ansatz,
+                                                   const std::vector<continuation::Branch>& branches, RunContext& context);
+/// Forces whose harmonic the ansatz does not hold, one warning each.
+std::vector<std::string> dropped_forces(const ForcedSystem& forced, const models::Ansatz& ansatz);
 
 }  // namespace whirl::studies

@@ -104,6 +104,7 @@ std::unique_ptr<Setup> setup(const Configuration& c) {
 std::vector<std::string> check(const Configuration& c) {
   const auto s = setup(c);
   auto warnings = check_forced_system(c);
+  for (auto& w : dropped_forces(s->forced, s->averaged.ansatz)) warnings.push_back(std::move(w));
   const std::string& kind = c.text("ansatz.kind");
   if (kind == "combinatorial-32-printed")
     warnings.emplace_back("the printed equations drop terms: ansatz.kind = \"combinatorial-32\" keeps all of them on the same harmonics");
@@ -219,26 +220,6 @@ void explore(const Configuration& c, const Setup& s, Network& net, RunContext& c
   if (net.branches().empty()) context.warn("no steady state was found in the range");
 }
 
-// Copies of one Floquet exponent stand omega/nu apart, so none needs a frequency above omega/(2 nu); averaging of first order holds for exponents
-// well below that.
-std::vector<Branch> with_fast_marked(const Setup& s, const std::vector<Branch>& branches, RunContext& context) {
-  std::vector<Branch> marked = branches;
-  int count = 0;
-  for (auto& b : marked)
-    for (auto& special : b.special) {
-      const double omega = s.forced.at(special.u.tail(1)).omega;
-      if (special.type != continuation::EventType::hopf || special.frequency <= 0.25 * omega / s.averaged.ansatz.nu) continue;
-      special.subtype = "fast";
-      ++count;
-    }
-  if (count > 0)
-    context.warn(
-        fmt::format("{} Hopf points marked \"fast\" have a frequency above omega/(4 nu): first-order averaging does not hold for them, trust "
-                    "floquet_modulus there",
-                    count));
-  return marked;
-}
-
 // ---- verification ----------------------------------------------------------------------------------------------------------
 
 void run_verification(const Configuration& c, const Setup& s, const Network& net, ResultFile& file, RunContext& context) {
@@ -283,7 +264,7 @@ ExitStatus run(const Configuration& c, RunContext& context) {
     file.flush();
   });
   explore(c, *s, net, context);
-  const auto branches = with_fast_marked(*s, net.branches(), context);
+  const auto branches = with_fast_marked(s->forced, s->averaged.ansatz, net.branches(), context);
   output.write_special_points(file, branches);
   file.flush();
   context.progress.clear();

@@ -51,6 +51,8 @@ Setup setup(const Configuration& c) {
   Setup s;
   s.source = equilibrium_source(c);
   s.first = c.text("continuation.parameter");
+  check_parameter_given(c, "continuation.parameter");
+  check_parameter_given(c, "second.parameter");
   s.second = c.text("second.parameter");
   s.network = network_of(c);
   s.source->check_lens("continuation.parameter", s.first, "continuation.range", s.network.walk.lower, s.network.walk.upper);

@@ -14,7 +14,8 @@
 ///     Branch branch = Walker(curve, {.lower = 0.01, .upper = 0.4}).walk(curve.start(1e-4, 1, Parity::symmetric));
 ///     double crossing = FrequencyCurve::kappa(branch.special[0].u);
 ///
-/// closest_approaches scans a range and finds where frequencies cross (h = 0) and where the ratio of neighbours is least, by the exact slope d ln w / ds = q'(K' - w^2 M')q / (2 w^2).
+/// closest_approaches scans a range and finds where frequencies cross (h = 0) and where the ratio of neighbours is least, by the exact slope d ln w /
+/// ds = q'(K' - w^2 M')q / (2 w^2).
 
 #include "models/catenary/modes.hpp"
 

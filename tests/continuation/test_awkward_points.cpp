@@ -242,3 +242,56 @@ TEST_CASE("folds and Hopf points that cancel in pairs beside other events") {
     CHECK(of_type(all, EventType::hopf).size() == c.hopfs.size());
   }
 }
+
+TEST_CASE("motion without damping is neutral all along and has no events") {
+  const System prey{{"x", "y"}, {"a*x - b*x*y", "-c*y + d*x*y"}, {{"a", 1.0}, {"b", 0.1}, {"c", 1.5}, {"d", 0.075}}};
+  for (const std::string lens : {"a", "d"}) {  // eigenvalues +-i sqrt(a c) at (c/d, a/b)
+    const double lower = lens == "a" ? 0.3 : 0.02, upper = lens == "a" ? 2.0 : 0.3, start = lens == "a" ? 1.0 : 0.075;
+    const auto all = branches(prey, lens, lower, upper, {{20.0, 10.0, start}});
+    REQUIRE(all.size() == 1);
+    CHECK(sound(all));
+    CHECK(all[0].special.empty());
+    CHECK(std::abs(all[0].eigenvalues(all[0].points() - 1)[0].imag()) > 0.5);
+  }
+}
+
+TEST_CASE("slow eigenvalues beside one that is ten decades faster") {
+  for (const double fast : {1e6, 1e8, 1e9, 1e10, 1e11, 1e12}) {
+    const System s{{"x", "y", "z"}, {"mu*x-2*y-x*(x^2+y^2)", "2*x+mu*y-y*(x^2+y^2)", "-fast*(z-x^2)"}, {{"mu", -1.0}, {"fast", fast}}};
+    const auto all = branches(s, "mu", -1.0, 1.0, {{0.0, 0.0, 0.0, -1.0}});
+    CAPTURE(fast);
+    CHECK(sound(all));
+    CHECK(of_type(all, EventType::branch_point).empty());
+    check_values(values(all, EventType::hopf), {0.0});
+  }
+}
+
+TEST_CASE("a branch that goes to infinity at a finite parameter ends there") {
+  // x = h m/(c - m) beside the pole at m = c, and x = -1/p
+  const System pole{{"x"}, {"1 + p*x"}, {{"p", -1.0}}};
+  const System prey{{"x", "y"}, {"x*(1-x)*(x-a) - x*y/(h+x)", "y*(c*x/(h+x) - m)"}, {{"a", 0.1}, {"m", 0.5}, {"h", 0.2}, {"c", 1.0}}};
+  const auto simple = branches(pole, "p", -1.0, 1.0, {{1.0, -1.0}});
+  CHECK(sound(simple));
+  REQUIRE(simple.size() == 1);
+  CHECK(simple[0].stop_reason == StopReason::unbounded);
+  CHECK(simple[0].special.empty());
+  const auto all = branches(prey, "m", 0.1, 1.0, {{1.0, 0.0, 0.5}});
+  CHECK(sound(all));
+  CHECK(std::any_of(all.begin(), all.end(),
+                    [](const Branch& b) { return b.stop_reason == StopReason::unbounded || b.start_reason == StopReason::unbounded; }));
+}
+
+TEST_CASE("Bratu's problem down to the parameter at which its upper branch is infinite") {
+  System s{{}, {}, {{"lam", 0.5}}};
+  const int n = 30;
+  std::vector<double> start(n + 1, 0.0);
+  start[n] = 0.5;
+  const auto x = [](int i) { return i < 0 || i >= n ? std::string("0") : "x" + std::to_string(i); };
+  for (int i = 0; i < n; ++i) {
+    s.variables.push_back(x(i));
+    s.rhs.push_back("961*(" + x(i + 1) + "-2*" + x(i) + "+" + x(i - 1) + ") + lam*exp(" + x(i) + ")");
+  }
+  const auto all = branches(s, "lam", 0.0, 4.0, {start});
+  CHECK(sound(all));
+  check_values(values(all, EventType::fold), {3.51192782459});
+}

@@ -2,6 +2,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <filesystem>
@@ -263,4 +264,109 @@ TEST_CASE("an ansatz for a cable in a continuation: with enough harmonics the ex
   const Ran unchosen = f.run_text(model);
   CHECK(unchosen.status == 2);
   CHECK(unchosen.err.find("ansatz.kind = \"superharmonic\": is for a [cable]") != std::string::npos);
+}
+
+namespace {
+
+const char* one_to_three = R"([modal_model]
+frequency = [1.0, 3.05]
+damping = [0.03, 0.05]
+term = [
+  { equation = 1, coefficient = 1.0, powers = [3, 0] },
+  { equation = 1, coefficient = 1.2, powers = [2, 1] },
+  { equation = 2, coefficient = 0.4, powers = [3, 0] },
+  { equation = 2, coefficient = 1.0, powers = [0, 3] },
+]
+[[modal_model.force]]
+equation = 1
+amplitude = 0.2
+harmonic = 1
+name = "F"
+[ansatz]
+kind = "list"
+q1 = [1.0, 3.0]
+q2 = [1.0, 3.0]
+[continuation]
+parameter = "omega"
+range = [0.6, 2.0]
+)";
+
+}  // namespace
+
+TEST_CASE("zero-Hopf points where the real eigenvalue is born from a pair within the step", "[continuation_study][slow]") {
+  const RunFolder f;
+  const Ran r =
+      f.run_text(std::string("study = \"two-parameter\"\n") + one_to_three + "[second]\nparameter = \"F\"\nrange = [0.02, 0.4]\n", "--json");
+  INFO(r.err);
+  REQUIRE(r.status == 0);
+  // Newton on f = 0, det J = 0, det (J - i w) = 0; each stands on a curve of Hopf points and on one of folds
+  const auto omega = values(r.out, "ZH", "omega"), F = values(r.out, "ZH", "F");
+  REQUIRE(omega.size() == 6);
+  const double w[] = {1.6381441975, 1.6670266802, 1.8114874873}, force[] = {0.0805341527, 0.0851596198, 0.1133502697};
+  for (std::size_t i = 0; i < 6; ++i) {
+    CHECK(omega[i] == Approx(w[i / 2]).epsilon(0).margin(2e-10));
+    CHECK(F[i] == Approx(force[i / 2]).epsilon(0).margin(2e-10));
+  }
+}
+
+TEST_CASE("averaged equations in a continuation: fast pairs are marked, forces outside the ansatz told", "[continuation_study]") {
+  const RunFolder f;
+  const Ran r = f.run_text(std::string("study = \"continuation\"\n") + one_to_three, "--json");
+  INFO(r.err);
+  REQUIRE(r.status == 0);
+  CHECK(r.err.find("Hopf points marked \"fast\"") != std::string::npos);
+  const Ran dropped = f.run_text(std::string("study = \"continuation\"\n") + one_to_three, "--set ansatz.q1=[3.0]");
+  CHECK(dropped.err.find("the force on q1 at harmonic 1 is outside the ansatz") != std::string::npos);
+}
+
+TEST_CASE("the same study gives the same digits in every run", "[continuation_study]") {
+  const RunFolder f;
+  const std::string nerve = R"toml(study = "continuation"
+[equilibrium_model]
+variables = ["V", "w"]
+parameters = { I = 0.0, gl = 2.0, vl = -60.0, gk = 8.0, vk = -84.0, gca = 4.0, vca = 120.0, C = 20.0, phi = 0.06666667 }
+rhs = ["(I - gl*(V-vl) - gk*w*(V-vk) - gca*0.5*(1+tanh((V+1.2)/18))*(V-vca))/C", "phi*(0.5*(1+tanh((V-12)/17.4))-w)*cosh((V-12)/(2*17.4))"]
+initial = [-60.0, 0.01]
+[continuation]
+parameter = "I"
+range = [-50.0, 200.0]
+)toml";
+  const Ran first = f.run_text(nerve, "--json");
+  REQUIRE(first.status == 0);
+  for (int i = 0; i < 5; ++i) CHECK(f.run_text(nerve, "--json").out == first.out);
+}
+
+TEST_CASE("names and places that would lose data are refused", "[continuation_study]") {
+  const RunFolder f;
+  const auto study_of = [](const std::string& variable, const std::string& parameter, const std::string& more = "") {
+    return "study = \"continuation\"\n[equilibrium_model]\nvariables = [\"" + variable + "\"]\nparameters = { " + parameter + " = 1.0 }\nrhs = [\"" +
+           parameter + " - " + variable + "^2\"]\ninitial = [1.0]\n" + more + "[continuation]\nparameter = \"" + parameter +
+           "\"\nrange = [0.5, 2.0]\n";
+  };
+  const std::pair<std::string, std::string> cases[] = {
+      {study_of("residual", "p"), "equilibrium_model.variables"},
+      {study_of("eig1_re", "p"), "equilibrium_model.variables"},
+      {study_of("x", "frequency"), "equilibrium_model.parameters"},
+      {study_of("x", "exp"), "equilibrium_model.parameters"},
+      {study_of("x", "p", "amplitudes = { p = [\"x\"] }\n"), "equilibrium_model.amplitudes"},
+      {study_of("x", "p") + "user_values = [5.0]\n", "continuation.user_values"},
+      {study_of("x", "p") + "seeds = [1.0, 5.0]\n", "continuation.seeds"},
+  };
+  for (const auto& [text, expected] : cases) {
+    const Ran r = f.run_text(text);
+    INFO(text << r.err);
+    CHECK(r.status == 2);
+    CHECK(std::count(r.err.begin(), r.err.end(), '\n') == 1);
+    CHECK(r.err.find(expected) != std::string::npos);
+    CHECK_FALSE(f.has_result());
+  }
+  std::ofstream(f.path / "own.toml") << study_of("x", "p");
+  const Ran own = program(f, "run own.toml -o own.toml");
+  CHECK(own.status == 2);
+  CHECK(slurp(f.path / "own.toml") == study_of("x", "p"));
+  std::string unnamed = study_of("x", "p");
+  unnamed.erase(unnamed.find("parameter = \"p\"\n"), 16);
+  const Ran missing = f.run_text(unnamed);
+  CHECK(missing.status == 2);
+  CHECK(missing.err.find("continuation.parameter is missing: one of p") != std::string::npos);
 }
