@@ -134,6 +134,7 @@ bool Network::repeats(const Branch& branch) const {
 bool Network::add_seed(const Vector& u0, const std::string& origin) {
   if (stopped_ || static_cast<int>(branches_.size()) >= options_.max_branches || contains(u0)) return false;
   Vector start = regular_start(u0);
+  if (const NewtonResult polished = newton(problem_, start, {.tolerance = 1e-12, .max_iterations = 30}); polished.ok()) start = polished.x;
   for (int r = 0; r < static_cast<int>(problem_.reflections().size()); ++r) {  // symmetric up to rounding is symmetric
     const Indices odd = odd_coordinates(problem_, r);
     if (start(odd).lpNorm<Eigen::Infinity>() < 1e-11 * (1.0 + start.head(problem_.size()).norm())) start(odd).setZero();

@@ -295,3 +295,10 @@ TEST_CASE("Bratu's problem down to the parameter at which its upper branch is in
   CHECK(sound(all));
   check_values(values(all, EventType::fold), {3.51192782459});
 }
+
+TEST_CASE("a start far off that Newton brings to a known branch gives no second one") {
+  const System s{{"x"}, {"p - x + x^3"}, {{"p", 0.0}}};
+  const auto all = branches(s, "p", -1.0, 1.0, {{0.0, 0.0}, {1.0, 0.0}, {50.0, 0.0}, {-7.0, 0.3}});
+  CHECK(all.size() == 1);
+  check_values(values(all, EventType::fold), {-2.0 / (3.0 * std::sqrt(3.0)), 2.0 / (3.0 * std::sqrt(3.0))});
+}
