@@ -100,6 +100,8 @@ class Curve {
 
   /// Eigenvalues of r_x or Floquet multipliers at the point last classified; empty if the problem has neither.
   const Eigen::VectorXcd& eigenvalues() const { return f_.is_flow() ? spectrum_.eigenvalues() : eigenvalues_; }
+  /// Unstable directions of the point last classified; what is neutral but for rounding is not.
+  int unstable(const Signature& signature) const { return f_.is_flow() ? spectrum_.clearly_unstable() : signature.total_unstable(); }
   /// Test functions of the point last classified.
   void copy_spectrum(Sample& to) const;  ///< rates and kappa of the last point classified
   void copy_rates(Sample& to) const { std::copy_n(rates_.begin(), parts_, to.rates.begin()); }

@@ -103,6 +103,12 @@ int Spectrum::unstable() const {
   return sum;
 }
 
+int Spectrum::clearly_unstable() const {
+  int count = 0;
+  for (const auto& z : eigenvalues_) count += z.real() > 1e-9 * std::abs(z) ? 1 : 0;
+  return count;
+}
+
 double Spectrum::kappa(int block) const {
   std::size_t first = 0;
   for (int k = 0; k < block; ++k) first += blocks_->indices[static_cast<std::size_t>(k)].size();

@@ -20,7 +20,8 @@ class Spectrum {
   const Eigen::VectorXcd& eigenvalues() const { return eigenvalues_; }  ///< block after block
   /// Real parts next to zero of a block: the test functions that announce events.
   const GrowthRates& rates(int block) const { return rates_[static_cast<std::size_t>(block)]; }
-  int unstable() const;  ///< eigenvalues with positive real part
+  int unstable() const;          ///< eigenvalues with positive real part
+  int clearly_unstable() const;  ///< those whose real part is above 1e-9 of their modulus, what an error of the point makes
   /// Squared imaginary part of the complex pair nearest the imaginary axis in the block; 0 without one.
   double kappa(int block) const;
 

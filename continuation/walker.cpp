@@ -56,6 +56,7 @@ struct Walker::State {
   double factor = 1.0;     // by which the next step may change
   double max_turn;         // between successive tangents of unit length
   int accepted = 0;
+  int unstable = 0;     // directions, of `next`
   int refinements = 0;  // of the step at hand, for the sake of events
   bool scale_from_slope = false;
   bool has_signature = false;  // of `now`; not at a branch point, where it is undefined
@@ -171,7 +172,7 @@ bool Walker::begin(const Vector& u0, const Vector& direction, bool from_branch_p
       if (!s.curve.sample(u0, normal, *s.now)) return false;
     }
     s.has_signature = true;
-    s.branch.append(s.now->u, s.now->tangent, 0.0, s.now->residual, 0.0, s.now->iterations, s.now->signature.total_unstable(),
+    s.branch.append(s.now->u, s.now->tangent, 0.0, s.now->residual, 0.0, s.now->iterations, s.curve.unstable(s.now->signature),
                     &s.curve.eigenvalues());
   }
   s.unbounded = 1e6 * std::max(1.0, s.curve.x_scale());
@@ -238,6 +239,7 @@ bool Walker::correct() {
   if (!s.curve.classify(s.next->u, s.next->tangent, s.next->signature)) return false;  // last: eigenvalues cost most
   s.curve.copy_spectrum(*s.next);
   s.eigenvalues = s.curve.eigenvalues();
+  s.unstable = s.curve.unstable(s.next->signature);
   s.next->residual = s.report.residual;
   s.next->iterations = s.report.iterations;
   return true;
@@ -458,8 +460,7 @@ void Walker::accept() {
   State& s = *s_;
   if (s.accepted > 2 && close_loop()) return;
   s.arclength += s.step_taken;
-  s.branch.append(s.next->u, s.next->tangent, s.arclength, s.next->residual, s.step, s.next->iterations, s.next->signature.total_unstable(),
-                  &s.eigenvalues);
+  s.branch.append(s.next->u, s.next->tangent, s.arclength, s.next->residual, s.step, s.next->iterations, s.unstable, &s.eigenvalues);
   std::swap(s.before, s.now);
   std::swap(s.now, s.next);
   s.has_before = s.has_signature;

@@ -251,6 +251,7 @@ TEST_CASE("motion without damping is neutral all along and has no events") {
     REQUIRE(all.size() == 1);
     CHECK(sound(all));
     CHECK(all[0].special.empty());
+    for (int i = 0; i < all[0].points(); ++i) CHECK(all[0].n_unstable(i) == 0);
     CHECK(std::abs(all[0].eigenvalues(all[0].points() - 1)[0].imag()) > 0.5);
   }
 }
