@@ -276,8 +276,20 @@ struct Largest {
   Peak peak;
 };
 
-template <class Value>
-Largest largest_of(const Setup& s, const std::vector<Row>& rows, const Value& value) {
+// What is made largest: the dynamic tension, or the displacement out of plane.
+struct Sought {
+  const Setup& s;
+  const ForcedSolver& solver;
+  const PeakFinder& peaks;
+  bool bounded, lateral;
+  Peak in(const Row& row) const { return lateral ? row.W : row.T; }
+  Peak at(double omega) const {
+    const ForcedMotion m = solver.at(omega / s.unit, s.harmonics[0]);
+    return lateral ? peaks.largest(m.lateral, Quantity::W) : peaks.largest(m.in_plane, Quantity::T);
+  }
+};
+
+Largest largest_of(const Setup& s, const std::vector<Row>& rows, const Sought& value) {
   std::size_t top = 0;
   for (std::size_t i = 0; i < rows.size(); ++i)
     if (std::isfinite(value.in(rows[i]).value) && !(value.in(rows[i]).value <= value.in(rows[top]).value)) top = i;
@@ -289,23 +301,6 @@ Largest largest_of(const Setup& s, const std::vector<Row>& rows, const Value& va
   const double omega = sampled.omega + found.first;
   return -found.second > sampled.peak.value ? Largest{omega, value.at(omega)} : sampled;
 }
-
-struct TensionOf {
-  const Setup& s;
-  const ForcedSolver& solver;
-  const PeakFinder& peaks;
-  bool bounded;
-  Peak in(const Row& row) const { return row.T; }
-  Peak at(double omega) const { return peaks.largest(solver.at(omega / s.unit, s.harmonics[0]).in_plane, Quantity::T); }
-};
-struct LateralOf {
-  const Setup& s;
-  const ForcedSolver& solver;
-  const PeakFinder& peaks;
-  bool bounded;
-  Peak in(const Row& row) const { return row.W; }
-  Peak at(double omega) const { return peaks.largest(solver.at(omega / s.unit, s.harmonics[0]).lateral, Quantity::W); }
-};
 
 bool moves_in_plane(const EndMotion& e) { return e.U1 != 0.0 || e.V1 != 0.0 || e.U2 != 0.0 || e.V2 != 0.0; }
 bool moves_laterally(const EndMotion& e) { return e.W1 != 0.0 || e.W2 != 0.0; }
@@ -370,7 +365,7 @@ ExitStatus run(const Configuration& c, RunContext& context) {
       (!in_plane || s.core.eta1 > 0.0 || s.core.eta2 > 0.0 || resonances[0].empty()) && (!lateral || s.core.eta3 > 0.0 || resonances[1].empty());
   if (!bounded) context.warn("without drag motion is unbounded at the natural frequencies: largest values are those of the frequencies computed");
   const double H = horizontal_tension(s.cable), a = s.cable.shape.a;
-  const Largest T = largest_of(s, rows, TensionOf{s, solver, peaks, bounded}), W = largest_of(s, rows, LateralOf{s, solver, peaks, bounded});
+  const Largest T = largest_of(s, rows, {s, solver, peaks, bounded, false}), W = largest_of(s, rows, {s, solver, peaks, bounded, true});
   for (const double w : s.at) {
     if (interrupted) break;
     const double least = write_motion(file, s, solver, w, int(c.integer("response.cable_points")));
