@@ -60,6 +60,7 @@ int main(int argc, char** argv) {
   CLI::App app{"Whirl: nonlinear response of cables by continuation, averaging and time integration"};
   app.set_version_flag("--version", version_text());
   app.require_subcommand(1);
+  app.failure_message([](const CLI::App*, const CLI::Error& e) { return fmt::format("error: {}; see whirl --help\n", e.what()); });
   std::string file, output, kind;
   std::vector<std::string> overrides;
   bool json = false, quiet = false;

@@ -141,8 +141,13 @@ TEST_CASE("bad input: one clear line, exit status 2, nothing written") {
     CHECK(r.err.find(expected) != std::string::npos);
     CHECK_FALSE(fs::exists(f.path / "x.h5"));
   }
-  const Ran r = program(f, "run");
-  CHECK(r.status == 2);
+  for (const std::string arguments : {"run", "", "runn", "run a.toml --nonsense", "run a.toml b.toml"}) {  // the command line itself
+    const Ran r = program(f, arguments);
+    INFO(arguments << "\n" << r.err);
+    CHECK(r.status == 2);
+    CHECK(lines(r.err) == 1);
+    CHECK(r.err.find("see whirl --help") != std::string::npos);
+  }
 }
 
 TEST_CASE("a truncated result file is refused") {
