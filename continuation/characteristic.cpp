@@ -14,8 +14,8 @@ constexpr int most_steps = 10;
 bool settled(double size, double previous) { return size <= 1e-11 || size * (size / previous) * (size / previous) <= 1e-16; }
 
 // What is left when a factor is split off carries an error of rounding times the size of the matrix squared: too much where both its roots are far
-// smaller.
-bool lost(double p, double q, double size) { return std::max(p * p, std::abs(q)) < 1e-8 * size * size; }
+// smaller. And the steps end at 1e-11 of the size: too early for a root that is far smaller than the other.
+bool lost(double p, double q, double size) { return std::max(p * p, std::abs(q)) < 1e-8 * size * size || std::abs(q) < 1e-5 * p * p; }
 
 }  // namespace
 
