@@ -298,7 +298,7 @@ void ResultFile::check_writable(const fs::path& path) {
   if (::access(folder.c_str(), W_OK | X_OK) != 0) refuse(path, fmt::format("folder {} is not writable", folder.string()));
 }
 
-void ResultFile::mark_failed(const fs::path& path, const std::string& reason) {
+void ResultFile::mark_failed(const fs::path& path, const std::string& reason) noexcept try {
   start_library();
   std::error_code ignored;
   if (!fs::exists(path, ignored) || H5Fis_hdf5(path.c_str()) <= 0) return;
@@ -307,6 +307,7 @@ void ResultFile::mark_failed(const fs::path& path, const std::string& reason) {
   const auto study = ensure_group(file, "/study");
   write_text_attribute(study, "outcome", "failed");
   write_text_attribute(study, "stop_reasons", reason);
+} catch (const std::exception&) {  // a file of another kind, or one that a full disk left open: what failed first is what is told
 }
 
 /// Writes; after a failure (disk full) the file is let go as it is, for closing it would write half of its structure over the last flushed state.

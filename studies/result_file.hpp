@@ -54,8 +54,9 @@ class ResultFile {
   static void check_writable(const std::filesystem::path& path);
 
   static constexpr const char* unfinished = "unfinished";  ///< attribute `outcome` of /study while a run goes on
-  /// Of a run that ended by an exception after its file was closed: outcome "failed" and why. Leaves a file alone whose run has told its outcome.
-  static void mark_failed(const std::filesystem::path& path, const std::string& reason);
+  /// Of a run that ended by an exception after its file was closed: outcome "failed" and why. Leaves a file alone whose run has told its outcome,
+  /// and what it cannot read or write.
+  static void mark_failed(const std::filesystem::path& path, const std::string& reason) noexcept;
 
   void attribute(const std::string& group, const std::string& name, double value);
   void attribute(const std::string& group, const std::string& name, const std::string& value);

@@ -101,11 +101,12 @@ std::vector<PointColumn> harmonic_columns(const ForcedSystem& forced, const Ansa
   for (const bool phases : {false, true})
     for (int i = 0; i < a.coordinates(); ++i)
       for (const int k : a.harmonics[static_cast<std::size_t>(i)]) {
+        if (phases && k == 0) continue;  // a mean has none
         const std::string& coordinate = forced.coordinates[static_cast<std::size_t>(i)];
         const double multiple = static_cast<double>(k) / a.nu;
         const std::string name = harmonic_name(coordinate, multiple), wave = fmt::format("cos({:g} omega t + phase) in {}", multiple, coordinate);
         const auto z = [a, size, i, k](In u) { return amplitude(a, u.head(size), i, k); };
-        if (phases && k > 0) columns.push_back({name + "_phase", "rad", "phase of " + wave, [z](In u) { return std::arg(z(u)); }});
+        if (phases) columns.push_back({name + "_phase", "rad", "phase of " + wave, [z](In u) { return std::arg(z(u)); }});
         if (!phases && k > 0) columns.push_back({name, forced.length_unit, "amplitude of " + wave, [z](In u) { return std::abs(z(u)); }});
         if (!phases && k == 0) columns.push_back({name, forced.length_unit, "mean of " + coordinate, [z](In u) { return z(u).real(); }});
         // Of many coordinates the printed table has room for the two that show a motion best.

@@ -119,6 +119,8 @@ at = [1.7506400565, 1.7506400566]
     CHECK(file.has("/motions/w1.7506400566"));
     const auto T = file.column("/resonance", "tension").values;
     CHECK(*std::max_element(T.begin(), T.end()) > 0.999 * 15964.49);
+    const auto along = file.column("/motions/w1.7506400565/h1", "tension").values;  // the motion next to the peak, at 201 points
+    CHECK(numbers(r.out, "tension").at(0) == Approx(*std::max_element(along.begin(), along.end())).epsilon(1e-3));
   }
   // Without drag there is no largest value, and a motion at a natural frequency is none.
   const Ran undamped = program(f, "run light.toml --json --set drag.tangential=0.0 --set drag.normal=0.0 -o u.h5");

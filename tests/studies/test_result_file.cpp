@@ -245,6 +245,12 @@ TEST_CASE("a run that ends by an exception tells so in its file", "[result_file]
     if (outcome == "unfinished") CHECK(reader.text_attribute("/study", "stop_reasons") == "no solution");
     CHECK(reader.column("/branches/B0", "omega").values.size() == 5);
   }
+  write_example(folder / "other.h5");  // without an outcome
+  const auto size = fs::file_size(folder / "other.h5");
+  ResultFile::mark_failed(folder / "other.h5", "nothing");
+  CHECK(fs::file_size(folder / "other.h5") == size);
+  const ResultFile held(folder / "held.h5");  // open still, as after a full disk
+  ResultFile::mark_failed(folder / "held.h5", "nothing");
   ResultFile::mark_failed(folder / "none.h5", "nothing");
   CHECK_FALSE(fs::exists(folder / "none.h5"));
 }
