@@ -19,7 +19,6 @@ TorusSystem::TorusSystem(const OrbitProblem& orbit, Indices state, Indices block
       orbit_(orbit),
       block_(std::move(block)),
       kappa0_(kappa),
-      velocity_(orbit.size(), orbit.size()),
       h_im_(orbit.size(), orbit.size() + orbit.parameters()),
       full_(orbit.size() + orbit.parameters()) {
   const int m = static_cast<int>(block_.size());
@@ -49,16 +48,13 @@ void TorusSystem::update_borders(In y) {
 }
 
 void TorusSystem::solve_bordered(In y) const {
-  orbit_.velocity(u_, velocity_);
+  orbit_.characteristic(u_, kappa(y), shift_, by_kappa_);
   const auto m = static_cast<Eigen::Index>(block_.size());
-  const double k = kappa(y);
-  for (Eigen::Index c = 0; c < m; ++c) {  // L
+  for (Eigen::Index c = 0; c < m; ++c)  // L
     for (Eigen::Index r = 0; r < m; ++r) {
       const int row = block_[std::size_t(r)], col = block_[std::size_t(c)];
-      bordered_(r, c) = Complex(j_(row, col), k * velocity_(row, col));
+      bordered_(r, c) = j_(row, col) + shift_(row, col);
     }
-    bordered_(c, c) -= k * k;
-  }
   bordered_.col(m).head(m) = b_;
   bordered_.row(m).head(m) = c_.adjoint();
   bordered_(m, m) = 0.0;
@@ -91,26 +87,23 @@ void TorusSystem::fill_jacobian(In y, MatrixOut j) const {
     for (Eigen::Index i = 0; i < m; ++i) sum -= std::conj(w_[i]) * entry(block_[std::size_t(i)]);
     return sum;
   };
-  const auto times_v = [&](const Matrix& c, int row) {
+  const auto times_v = [&](const Eigen::MatrixXcd& matrix, int row) {
     Complex sum = 0.0;
-    for (Eigen::Index l = 0; l < m; ++l) sum += c(row, block_[std::size_t(l)]) * v_[l];
+    for (Eigen::Index l = 0; l < m; ++l) sum += matrix(row, block_[std::size_t(l)]) * v_[l];
     return sum;
   };
   const auto put = [&](int col, Complex g) {
     j(s, col) = g.real();
     j(s + 1, col) = g.imag();
   };
-  for (int c = 0; c < h_.cols(); ++c)
-    if (column(c) >= 0) put(column(c), against_w([&](int row) { return Complex(h_(row, c), h_im_(row, c)); }));
-  Eigen::Index at = 0;
-  put(s + 1, against_w([&](int row) { return Complex(0.0, 1.0) * times_v(velocity_, row) - 2.0 * k * v_[at++]; }));
-  Matrix slope(orbit_.size(), orbit_.size());
-  for (int p = 0; p < orbit_.parameters(); ++p) {
-    orbit_.velocity_slope(u_, p, slope);
-    const int col = column(orbit_.size() + p);
-    const Complex more = against_w([&](int row) { return Complex(0.0, k) * times_v(slope, row); });
-    put(col, Complex(j(s, col), j(s + 1, col)) + more);
+  Eigen::MatrixXcd slope(orbit_.size(), orbit_.size());
+  for (int c = 0; c < h_.cols(); ++c) {
+    if (column(c) < 0) continue;
+    Complex g = against_w([&](int row) { return Complex(h_(row, c), h_im_(row, c)); });
+    if (orbit_.characteristic_slope(u_, k, c, slope)) g += against_w([&](int row) { return times_v(slope, row); });
+    put(column(c), g);
   }
+  put(s + 1, against_w([&](int row) { return times_v(by_kappa_, row); }));
 }
 
 Eigen::VectorXcd TorusSystem::null_vector(In y) const {

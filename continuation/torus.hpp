@@ -1,8 +1,9 @@
 #pragma once
 /// TorusSystem: a periodic motion with a Floquet exponent i kappa, 0 < kappa < Omega (Neimark-Sacker). Its own regular system,
 ///
-///     r_S(x, p) = 0,  Re g = Im g = 0      [ L(i kappa)   b ] [v]   [0]      L = A + i kappa C - kappa^2 I,  A = r_x and C on block M
-///                                          [ c*           0 ] [g] = [1]      dg = -w* (D2r[v, .] + i kappa dC v),  dg/dkappa = -w* (i C - 2 kappa) v
+///     r_S(x, p) = 0,  Re g = Im g = 0      [ L(i kappa)   b ] [v]   [0]      L on block M; A + i kappa C - kappa^2 I of a system of second order, A
+///     = r_x
+///                                          [ c*           0 ] [g] = [1]      dg = -w* (D2r[v, .] + d(L - A) v),  dg/dkappa = -w* dL/dkappa v
 ///
 /// S are the unknowns that the motion's symmetries leave, M the unknowns of the group of directions that loses stability. L(lambda) and C as in
 /// core/orbit_problem.hpp. Unknowns (x_S, p1, kappa | p2 ...). v is the shape of the disturbance.
@@ -35,7 +36,8 @@ class TorusSystem : public AugmentedSystem {
   Indices block_;
   double kappa0_;
   Eigen::VectorXcd b_, c_;
-  mutable Matrix velocity_, h_im_;
+  mutable Matrix h_im_;
+  mutable Eigen::MatrixXcd shift_, by_kappa_;  // L - r_x and its slope
   mutable Eigen::MatrixXcd bordered_;
   mutable Eigen::PartialPivLU<Eigen::MatrixXcd> lu_;
   mutable Eigen::VectorXcd v_, w_;
