@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "core/newton.hpp"
+#include "models/dynamics/periodic/settle_on_cycle.hpp"
 
 namespace whirl::studies {
 
@@ -16,6 +17,8 @@ using namespace models;
 namespace {
 
 constexpr double end_part = 0.2;          // of the start's first harmonic: where a family that shrinks ends
+constexpr double motion_end_part = 0.01;  // the same of a family met by integration, whose start is large
+constexpr double same_period = 1e-7;
 constexpr double near_hopf = 0.01;        // of range and period: an end this near a Hopf point is at it
 constexpr int most_tries = 14;            // of an amplitude for the first cycle
 constexpr double first_amplitude = 1e-3;  // of the size of the equilibrium: the first try
@@ -123,6 +126,11 @@ std::string CycleBranches::add_hopf(const SpecialPoint& hopf, const std::string&
   const double period = 2.0 * std::numbers::pi / hopf.frequency;
   family->least_harmonic = end_part * u0[LimitCycle::first_harmonic];
   family->longest_period = options_.longest_period > 0.0 ? options_.longest_period : options_.longest_multiple * period;
+  follow(std::move(family), u0);
+  return "";
+}
+
+void CycleBranches::follow(std::unique_ptr<CycleFamily> family, const Vector& u0) {
   NetworkOptions network = options_.network;
   constexpr double infinity = std::numeric_limits<double>::infinity();
   network.walk.bounds.push_back({LimitCycle::first_harmonic, family->least_harmonic, infinity});
@@ -137,8 +145,41 @@ std::string CycleBranches::add_hopf(const SpecialPoint& hopf, const std::string&
   kept.net->on_branch([this, &kept](const Branch& b, int level) {
     if (on_branch_) on_branch_(b, kept, level);
   });
-  kept.net->add_seed(u0, origin);
+  kept.net->add_seed(u0, kept.origin);
   kept.net->switch_branches();
+}
+
+// The same period at the same parameter value: one family, unless two have it by chance.
+bool CycleBranches::knows(double period, double p) const {
+  for (const auto& family : families_)
+    for (int level = 0; level < family->net->levels(); ++level)
+      for (const auto& [branch, u] : family->net->network(level).solutions_at(p))
+        if (std::abs(family->problem(level).period(u) / period - 1.0) < same_period) return true;
+  return false;
+}
+
+std::string CycleBranches::add_motion(const Vector& x0, double p, double transient, const std::string& origin) {
+  const std::optional<FlowCycle> met = settle_on_cycle(flow_, x0, Vector::Constant(1, p), {.transient = transient});
+  if (!met) return "no periodic motion was met";
+  if (knows(met->period, p)) return "the motion met is on a branch known";
+  Eigen::Index most = 0;
+  (met->x.rowwise().maxCoeff() - met->x.rowwise().minCoeff()).maxCoeff(&most);
+  auto family = std::make_unique<CycleFamily>();
+  family->origin = origin;
+  family->single = std::make_unique<LimitCycle>(flow_, Vector::Unit(flow_.size(), most), options_.cycle);
+  const auto count = met->x.cols();
+  const auto orbit = [&](double s) {
+    const double at = s * static_cast<double>(count);
+    const auto i = static_cast<Eigen::Index>(at) % count;
+    const double part = at - std::floor(at);
+    return Vector((1.0 - part) * met->x.col(i) + part * met->x.col((i + 1) % count));
+  };
+  const NewtonResult at =
+      newton(*family->single, family->single->guess(orbit, met->period, Vector::Constant(1, p)), {.tolerance = 1e-11, .max_iterations = 20});
+  if (!at.ok()) return "Newton does not converge on the motion met";
+  family->least_harmonic = motion_end_part * at.x[LimitCycle::first_harmonic];
+  family->longest_period = options_.longest_period > 0.0 ? options_.longest_period : options_.longest_multiple * met->period;
+  follow(std::move(family), at.x);
   return "";
 }
 

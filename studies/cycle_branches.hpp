@@ -6,7 +6,8 @@
 ///     for (const Branch& b : equilibria)
 ///       for (const SpecialPoint& s : b.special)
 ///         if (s.type == EventType::hopf) cycles.add_hopf(s, b.name + ":HB1");
-///     for (const CycleFamily& f : cycles.families()) ...     // f.net holds the branches, f.problem(level) reads them
+///     cycles.add_motion(x0, p, 500.0);                       // the stable cycle that x0 settles on
+///     for (const auto& f : cycles.families()) ...            // f->net holds the branches, f->problem(level) reads them
 ///
 /// A family starts beside its Hopf point at a first harmonic that moves the parameter by about `start_shift` of its range (the parameter goes with
 /// the square of the amplitude), and ends where it shrinks to an equilibrium again, at the parameter's bounds, or where its period passes
@@ -54,11 +55,15 @@ class CycleBranches {
   void set_observer(continuation::Observer observer) { observer_ = std::move(observer); }
   /// Follows the family of this Hopf point; empty if it is one, a reason if there is none.
   std::string add_hopf(const continuation::SpecialPoint& hopf, const std::string& origin);
+  /// Integrates from x0 at parameter value p over `transient`, and follows the family of the stable cycle met; empty, or a reason if there is none.
+  std::string add_motion(const Vector& x0, double p, double transient, const std::string& origin);
   const std::vector<std::unique_ptr<CycleFamily>>& families() const { return families_; }
 
  private:
   bool ends_at(const continuation::SpecialPoint& hopf) const;
   Vector start(const models::LimitCycle& cycle, const continuation::SpecialPoint& hopf) const;
+  void follow(std::unique_ptr<CycleFamily> family, const Vector& u0);
+  bool knows(double period, double p) const;
 
   const Problem& flow_;
   CycleOptions options_;

@@ -7,6 +7,7 @@
 #include "studies/catenary_modes_study.hpp"
 #include "studies/compare_study.hpp"
 #include "studies/continuation_study.hpp"
+#include "studies/cycles_study.hpp"
 #include "studies/guy_modes_study.hpp"
 #include "studies/guy_statics_study.hpp"
 #include "studies/guy_stiffness_study.hpp"
@@ -23,9 +24,9 @@ namespace whirl::studies {
 
 const std::vector<StudyKind>& study_kinds() {
   static const std::vector<StudyKind> kinds = {
-      superharmonic_study(), continuation_study(), two_parameter_study(), periodic_study(),         slow_flow_study(),      compare_study(),
-      integrate_study(),     basins_study(),       modes_study(),         mode_convergence_study(), catenary_modes_study(), catenary_forced_study(),
-      veering_study(),       guy_statics_study(),  guy_modes_study(),     guy_stiffness_study(),
+      superharmonic_study(),   continuation_study(), cycles_study(),      two_parameter_study(), periodic_study(),         slow_flow_study(),
+      compare_study(),         integrate_study(),    basins_study(),      modes_study(),         mode_convergence_study(), catenary_modes_study(),
+      catenary_forced_study(), veering_study(),      guy_statics_study(), guy_modes_study(),     guy_stiffness_study(),
   };
   return kinds;
 }
