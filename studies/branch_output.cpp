@@ -8,6 +8,9 @@
 #include <cmath>
 #include <regex>
 #include <set>
+#include <span>
+
+#include "studies/open_results.hpp"
 
 namespace whirl::studies {
 namespace {
@@ -50,6 +53,11 @@ std::string label(const Branch& branch, std::size_t special) {
   return fmt::format("{}{}", to_string(branch.special[special].type), number);
 }
 
+namespace {
+enum class Rows { add, replace };
+void put_special_points(ResultFile& file, const BranchOutput& out, std::span<const Branch> branches, Rows rows);
+}  // namespace
+
 void BranchOutput::write_branch(ResultFile& file, const Branch& b) const {
   const std::string group = "/branches/" + b.name;
   const int n = b.points();
@@ -79,9 +87,19 @@ void BranchOutput::write_branch(ResultFile& file, const Branch& b) const {
   file.attribute(group, "stop_reason", std::string(to_string(b.stop_reason)));
   file.attribute(group, "isola", b.isola ? 1.0 : 0.0);
   file.attribute(group, "mirror_image_exists", b.mirror_image ? 1.0 : 0.0);
+  put_special_points(file, *this, {&b, 1}, Rows::add);
 }
 
 void BranchOutput::write_special_points(ResultFile& file, const std::vector<Branch>& branches) const {
+  put_special_points(file, *this, branches, Rows::replace);
+}
+
+namespace {
+
+void put_special_points(ResultFile& file, const BranchOutput& out, std::span<const Branch> branches, Rows rows) {
+  const auto &parameter = out.parameter, &parameter_unit = out.parameter_unit;
+  const auto& columns = out.columns;
+  const auto period_at = [&out](In u) { return out.period_at(u); };
   std::vector<const Branch*> branch_of;
   std::vector<const SpecialPoint*> points;
   TextColumn names{"branch", "branch the point lies on", {}}, labels{"label", "type and running number on the branch", {}},
@@ -118,8 +136,12 @@ void BranchOutput::write_special_points(ResultFile& file, const std::vector<Bran
   add("bracket_lower", parameter_unit, "the test function changes between bracket_lower and bracket_upper",
       [](const SpecialPoint& s) { return s.bracket[0]; });
   add("bracket_upper", parameter_unit, "see bracket_lower", [](const SpecialPoint& s) { return s.bracket[1]; });
-  file.table("/special_points", table, {names, labels, types, subtypes, criticalities});
+  const std::vector<TextColumn> texts{names, labels, types, subtypes, criticalities};
+  if (rows == Rows::add) extend_table(file, "/special_points", table, texts);
+  else file.table("/special_points", table, texts);
 }
+
+}  // namespace
 
 std::string BranchOutput::json(const std::vector<Branch>& branches) const {
   std::string points, summary;

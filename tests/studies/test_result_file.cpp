@@ -9,9 +9,12 @@
 #include <csignal>
 #include <fstream>
 #include <limits>
+#include <random>
 
+#include "studies/apart.hpp"
 #include "studies/configuration.hpp"
 #include "studies/export.hpp"
+#include "studies/open_results.hpp"
 #include "studies/result_file.hpp"
 #include "tests/studies/program.hpp"
 #include "tests/studies/refusal.hpp"
@@ -188,12 +191,14 @@ TEST_CASE("a full disk leaves what was flushed", "[result_file]") {
     int written = 0;
     try {
       ResultFile file(path);
+      file.attribute("/study", "outcome", std::string(ResultFile::unfinished));
       for (; written < 100; ++written) {
         file.table("/branches/B" + std::to_string(written), branch(2000));
         file.flush();
       }
     } catch (const std::runtime_error& e) {
       const bool clear = std::string(e.what()).starts_with(path.string() + ": writing ");
+      ResultFile::mark_failed(path, e.what());
       ::_exit(clear ? written : 101);
     }
     ::_exit(102);
@@ -205,16 +210,117 @@ TEST_CASE("a full disk leaves what was flushed", "[result_file]") {
   REQUIRE(WEXITSTATUS(status) < 100);
   const ResultReader reader(path);
   CHECK(reader.tables().size() == static_cast<std::size_t>(WEXITSTATUS(status)));
+  CHECK(reader.text_attribute("/study", "outcome") == "failed");
+  CHECK(reader.text_attribute("/study", "stop_reasons").starts_with(path.string() + ": writing failed"));
   CHECK(reader.column("/branches/B0", "omega").values == branch(2000)[0].values);
 }
 
-TEST_CASE("a file in use is refused, not called damaged", "[result_file]") {
+TEST_CASE("a result that grows can be read, and no second run may have its path", "[result_file]") {
   const Folder folder;
   const fs::path path = folder / "r.h5";
   ResultFile file(path);
-  file.flush();
-  CHECK(refusal_to_read(path) == path.string() + ": is being written by another program");
+  file.attribute("/study", "outcome", std::string(ResultFile::unfinished));
+  CHECK(refusal_to_write(path) == path.string() + ": is being written by another program");  // not at its path yet
+  for (int i = 1; i <= 3; ++i) {
+    file.table("/branches/B" + std::to_string(i), branch(30));
+    file.flush();
+    CHECK(ResultReader(path).tables().size() == static_cast<std::size_t>(i));
+  }
   CHECK(refusal_to_write(path) == path.string() + ": is being written by another program");
+}
+
+TEST_CASE("an older result stays until the run has a table", "[result_file]") {
+  const Folder folder;
+  const fs::path path = folder / "r.h5";
+  write_example(path);
+  const std::string old = contents(path);
+  {
+    ResultFile file(path);
+    file.attribute("/study", "outcome", std::string(ResultFile::unfinished));
+    file.flush();
+    CHECK(contents(path) == old);
+    CHECK_FALSE(published(file));
+    SECTION("the first table replaces it") {
+      file.table("/branches/B", branch(3));
+      CHECK(contents(path) == old);
+      file.flush();
+      CHECK(published(file));
+      CHECK(ResultReader(path).tables() == std::vector<std::string>{"/branches/B"});
+    }
+    SECTION("a run interrupted before leaves it") {
+      file.attribute("/study", "outcome", std::string(interrupted_outcome));
+      file.flush();
+      CHECK(contents(path) == old);
+    }
+  }
+  CHECK_FALSE(fs::exists(path.string() + ".unfinished"));
+}
+
+TEST_CASE("a symbolic link stays, its target is replaced; what a killed run left is taken over", "[result_file]") {
+  const Folder folder;
+  fs::create_directory(folder / "elsewhere");
+  fs::create_symlink("elsewhere/r.h5", folder / "link.h5");
+  std::ofstream(folder / "elsewhere/r.h5.unfinished") << "left by a killed run";
+  for (int i = 0; i < 2; ++i) {  // the target is missing, then there
+    write_example(folder / "link.h5");
+    CHECK(fs::is_symlink(folder / "link.h5"));
+    CHECK(fs::is_regular_file(folder / "elsewhere/r.h5"));
+    CHECK(ResultReader(folder / "link.h5").tables().size() == 2);
+    CHECK_FALSE(fs::exists(folder / "elsewhere/r.h5.unfinished"));
+  }
+  fs::create_directory(folder / "x.h5.unfinished");
+  CHECK(refusal_to_write(folder / "x.h5").ends_with("x.h5.unfinished stands in the way"));
+}
+
+TEST_CASE("a table that is extended reads as one written at once", "[result_file]") {
+  const Folder folder;
+  ResultFile file(folder / "r.h5");
+  std::vector<double> all;
+  std::vector<std::string> texts;
+  for (int i = 0; i < 200; ++i) {
+    std::vector<double> rows;
+    for (int k = 0; k < i % 7; ++k) rows.push_back(100.0 * i + k);
+    const std::vector<std::string> names(rows.size(), "B" + std::to_string(i));
+    extend_table(file, "/special_points", {{"omega", "rad/s", "place", rows}}, {{"branch", "its name", names}});
+    all.insert(all.end(), rows.begin(), rows.end());
+    texts.insert(texts.end(), names.begin(), names.end());
+    file.flush();
+    if (i % 50 != 49) continue;
+    const ResultReader reader(folder / "r.h5");
+    CHECK(reader.column("/special_points", "omega").values == all);
+    CHECK(reader.text_column("/special_points", "branch").values == texts);
+    CHECK(reader.column("/special_points", "omega").unit == "rad/s");
+  }
+  file.table("/special_points", {{"omega", "rad/s", "place", {1.0}}}, {{"branch", "its name", {"B"}}});
+  extend_table(file, "/special_points", {{"omega", "rad/s", "place", {2.0}}}, {{"branch", "its name", {"C"}}});
+  file.flush();
+  CHECK(ResultReader(folder / "r.h5").column("/special_points", "omega").values.back() == 2.0);
+}
+
+TEST_CASE("hundreds of flushes cost what is new", "[result_file]") {
+  const Folder folder;
+  const auto size_with = [&](int branches) {
+    ResultFile file(folder / "r.h5");
+    for (int i = 0; i < branches; ++i) {
+      file.table("/branches/B" + std::to_string(i), branch(300));
+      extend_table(file, "/special_points", branch(4));
+      file.flush();
+    }
+    return static_cast<double>(fs::file_size(folder / "r.h5"));
+  };
+  const double few = size_with(125), many = size_with(500);
+  CHECK(many < 6.0 * few);  // four times the data and a list of names that is written anew each time
+  CHECK(ResultReader(folder / "r.h5").tables().size() == 501);
+}
+
+TEST_CASE("a list longer than an attribute can be is kept as a column", "[result_file]") {
+  const Folder folder;
+  const std::vector<double> numbers(20000, 0.5);
+  {
+    ResultFile file(folder / "r.h5");
+    file.attribute("/study", "stiffness.at", numbers);
+  }
+  CHECK(ResultReader(folder / "r.h5").column("/study", "stiffness.at").values == numbers);
 }
 
 TEST_CASE("a result that a reader holds open is refused and stays as it is", "[result_file]") {
@@ -253,6 +359,44 @@ TEST_CASE("a run that ends by an exception tells so in its file", "[result_file]
   ResultFile::mark_failed(folder / "held.h5", "nothing");
   ResultFile::mark_failed(folder / "none.h5", "nothing");
   CHECK_FALSE(fs::exists(folder / "none.h5"));
+}
+
+TEST_CASE("work in a process of its own: crashes and errors are one line", "[export]") {
+  const Folder folder;
+  write_example(folder / "r.h5");
+  const std::string name = (folder / "r.h5").string();
+  const auto apart = [&](auto work) { return message([&] { (void)in_process_of_its_own(name, work); }); };
+  using Lines = std::vector<std::string>;
+  CHECK(in_process_of_its_own(name, [] { return Lines{"a", "", "b"}; }) == Lines{"a", "", "b"});
+  CHECK(apart([]() -> Lines { throw InputError("said so"); }) == "said so");
+  CHECK(apart([]() -> Lines { throw std::runtime_error("reading failed"); }) == name + ": is damaged");
+  CHECK(apart([]() -> Lines {
+          ::raise(SIGKILL);
+          return {};
+        }) == name + ": is damaged");
+}
+
+TEST_CASE("files with any bytes changed are read or refused in one line", "[export]") {
+  const Folder folder;
+  write_example(folder / "r.h5");
+  const std::string whole = contents(folder / "r.h5"), name = (folder / "m.h5").string();
+  std::minstd_rand chance(7);
+  for (int i = 0; i < 60; ++i) {
+    std::string mutated = whole;
+    for (std::size_t k = 0; k < 1 + chance() % 8; ++k) {
+      std::size_t at = chance() % mutated.size();
+      while (mutated[at] == 0) at = chance() % mutated.size();
+      mutated[at] = static_cast<char>(chance());
+    }
+    std::ofstream(name, std::ios::binary) << mutated;
+    const std::string refusal = message([&] {
+      (void)in_process_of_its_own(name, [&] {
+        read_all(name);
+        return std::vector<std::string>{};
+      });
+    });
+    CHECK((refusal == "accepted" || refusal.starts_with(name + ": ")));
+  }
 }
 
 TEST_CASE("export writes one CSV file per table", "[export]") {
