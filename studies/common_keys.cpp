@@ -2,7 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <cstdio>
 #include <numbers>
+
+#include "studies/interruption.hpp"
+#include "studies/open_results.hpp"
 
 namespace whirl::studies {
 
@@ -261,11 +265,16 @@ ExitStatus finish(ResultFile& file, RunContext& context, const std::vector<conti
 }
 
 ExitStatus finish(ResultFile& file, const RunContext& context, ExitStatus status, const std::vector<std::string>& reasons) {
+  end_begins();
   if (interrupted) status = ExitStatus::stopped_by_user;
-  file.attribute("/study", "stop_reasons", reasons);
+  const bool silent = status == ExitStatus::numerical_failure && reasons.empty();
+  file.attribute("/study", "stop_reasons", !silent ? reasons : context.warnings.empty() ? std::vector<std::string>{"no result"} : context.warnings);
   file.attribute("/study", "warnings", context.warnings);
   file.attribute("/study", "outcome", std::string(status == ExitStatus::ok ? "complete" : interrupted ? "interrupted" : "partial"));
   file.flush();
+  if (!published(file)) fmt::print(stderr, "{}: no result yet, an older one is left as it was\n", file.path().string());
+  if (status == ExitStatus::numerical_failure && context.warnings.empty())
+    fmt::print(stderr, "error: the run is incomplete: {}\n", reasons.empty() ? "no result" : reasons.front());
   return status;
 }
 

@@ -7,10 +7,14 @@
 #include <filesystem>
 
 #include "core/memory.hpp"
+#include "studies/apart.hpp"
 #include "studies/export.hpp"
+#include "studies/interruption.hpp"
 #include "studies/modes_study.hpp"
+#include "studies/open_results.hpp"
 #include "studies/registry.hpp"
 #include "studies/result_file.hpp"
+#include "studies/standard_streams.hpp"
 
 using namespace whirl::studies;
 namespace fs = std::filesystem;
@@ -32,7 +36,7 @@ ExitStatus run(const std::string& file, const std::vector<std::string>& override
   std::error_code ignored;
   if (fs::equivalent(context.output, file, ignored)) throw InputError(fmt::format("{}: is the study file itself, not a place for results", file));
   ResultFile::check_writable(context.output);
-  catch_interrupts();
+  catch_interrupts_of_run(quiet);
   ExitStatus status;
   try {
     status = kind.run(configuration, context);
@@ -53,9 +57,20 @@ ExitStatus check(const std::string& file, const std::vector<std::string>& overri
   return ExitStatus::ok;
 }
 
+/// Reads all before anything is written.
+std::vector<std::string> exported(const std::string& file, const std::string& folder) {
+  return in_process_of_its_own(file, [&] {
+    read_all(file);
+    std::vector<std::string> files;
+    for (const auto& written : export_csv(file, folder)) files.push_back(written.string());
+    return files;
+  });
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
+  secure_standard_streams();
   whirl::keep_freed_memory();
   CLI::App app{"Whirl: nonlinear response of cables by continuation, averaging and time integration"};
   app.set_version_flag("--version", version_text());
@@ -94,15 +109,18 @@ int main(int argc, char** argv) {
     if (list_command->parsed())
       for (const auto& k : study_kinds()) fmt::print("{:<16} {}\n", k.schema.kind(), k.schema.summary());
     if (export_command->parsed())
-      for (const auto& written : export_csv(file, output)) fmt::print("{}\n", written.string());
+      for (const auto& written : exported(file, output)) fmt::print("{}\n", written);
   } catch (const CLI::ParseError& e) {
-    const int code = app.exit(e);
-    return code == 0 ? 0 : 2;
+    if (app.exit(e) != 0) status = ExitStatus::bad_input;
   } catch (const InputError& e) {
     fmt::print(stderr, "error: {}\n", e.what());
     status = ExitStatus::bad_input;
   } catch (const std::exception& e) {
     fmt::print(stderr, "error: {}\n", e.what());
+    status = ExitStatus::numerical_failure;
+  }
+  if (const auto lost = lost_output(); lost && status == ExitStatus::ok) {
+    fmt::print(stderr, "error: {}\n", *lost);
     status = ExitStatus::numerical_failure;
   }
   return static_cast<int>(status);

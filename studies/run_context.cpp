@@ -1,6 +1,7 @@
 #include "studies/run_context.hpp"
 
 #include <fmt/format.h>
+#include <semaphore.h>
 #include <unistd.h>
 
 #include <Eigen/Core>
@@ -9,17 +10,26 @@
 #include <cstdint>
 #include <cstdio>
 #include <ctime>
+#include <system_error>
+#include <thread>
 
 #include "core/kinsol.hpp"
-#include "studies/result_file.hpp"
+#include "studies/interruption.hpp"
+#include "studies/open_results.hpp"
 
 namespace whirl::studies {
 
 std::atomic<bool> interrupted{false};
 
 namespace {
+
+constexpr std::int64_t second_press_ms = 500;  ///< two signals at once are one: `timeout -s INT` sends one to the program and one to its group
+constexpr std::int64_t patience_ms = 700;      ///< for a run to end by itself after the first
+
 std::atomic<std::int64_t> first_interrupt_ms{0};
-static_assert(std::atomic<std::int64_t>::is_always_lock_free);  // the handler may touch nothing else
+static_assert(std::atomic<std::int64_t>::is_always_lock_free);  // the handler may touch nothing else, but post a semaphore
+std::atomic<bool> ending{false};
+sem_t pressed;
 
 std::int64_t milliseconds_now() {
   timespec now{};
@@ -27,16 +37,44 @@ std::int64_t milliseconds_now() {
   return std::int64_t(now.tv_sec) * 1000 + now.tv_nsec / 1000000;
 }
 
-// A second Ctrl-C does not wait. Two signals at once are one: `timeout -s INT` sends one to the program and one to its group.
+// A second Ctrl-C does not wait.
 void on_interrupt(int) {
   const std::int64_t now = milliseconds_now();
   std::int64_t first = 0;
-  if (!first_interrupt_ms.compare_exchange_strong(first, now) && now - first > 500) std::_Exit(130);
+  if (!first_interrupt_ms.compare_exchange_strong(first, now) && now - first > second_press_ms)
+    std::_Exit(static_cast<int>(ExitStatus::stopped_by_user));
   interrupted = true;
+  sem_post(&pressed);
 }
+
+/// Ends a run that does not end by itself: its file holds all that was finished.
+void stand_by(bool quiet) {
+  while (sem_wait(&pressed) != 0) continue;
+  while (ending || milliseconds_now() - first_interrupt_ms < patience_ms) std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  const auto results = end_interrupted_runs();
+  if (!quiet) {
+    if (results.empty()) fmt::print(stderr, "interrupted before a first result\n");
+    for (const auto& path : results) fmt::print(stderr, "interrupted; result: {}\n", path.string());
+  }
+  std::_Exit(static_cast<int>(ExitStatus::stopped_by_user));
+}
+
 }  // namespace
 
-void catch_interrupts() { std::signal(SIGINT, on_interrupt); }
+void catch_interrupts_of_run(bool quiet) {
+  sem_init(&pressed, 0, 0);
+  try {
+    std::thread(stand_by, quiet).detach();
+  } catch (const std::system_error&) {  // no thread to be had: the loops that look at `interrupted` are what is left
+  }
+  std::signal(SIGINT, on_interrupt);
+  std::signal(SIGTERM, on_interrupt);
+  if (std::signal(SIGHUP, on_interrupt) == SIG_IGN) std::signal(SIGHUP, SIG_IGN);  // nohup
+}
+
+void catch_interrupts() { catch_interrupts_of_run(false); }
+
+void end_begins() { ending = true; }
 
 Progress::Progress() : terminal_(isatty(STDERR_FILENO) != 0) {}
 
