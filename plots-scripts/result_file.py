@@ -1,5 +1,7 @@
 """Reads a Whirl result file whole, so that damage shows before anything is drawn."""
 import os
+import pickle
+import resource
 from dataclasses import dataclass, field
 
 import h5py
@@ -43,13 +45,56 @@ class Group:
         return bool(self.attributes or self.columns or self.groups)
 
 
+# Of processor time: ten times what the slowest figures of a good file take.
+LEAST_SECONDS, BYTES_PER_SECOND = 100, 200_000
+BEST_COMPRESSION = 1032  # of deflate: a damaged header claims more
+
+
+def in_process_of_its_own(path, work):
+    """What work() returns: HDF5 crashes on some damaged files and never ends on others, and figures of any number may take any time."""
+    receive, send = os.pipe()
+    child = os.fork()
+    if child == 0:
+        os.close(receive)
+        code = 1
+        try:
+            seconds = LEAST_SECONDS + os.path.getsize(path) // BYTES_PER_SECOND
+            resource.setrlimit(resource.RLIMIT_CPU, (seconds, seconds))
+            resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
+            with os.fdopen(send, "wb") as pipe:
+                pickle.dump(result_or_error(work), pipe)
+            code = 0
+        finally:
+            os._exit(code)
+    os.close(send)
+    with os.fdopen(receive, "rb") as pipe:
+        content = pipe.read()
+    if os.waitpid(child, 0)[1] != 0:
+        raise ResultError("is damaged")
+    result, error = pickle.loads(content)  # of our own making
+    if error is not None:
+        raise ResultError(error)
+    return result
+
+
+def result_or_error(work):
+    try:
+        return work(), None
+    except ResultError as error:
+        return None, str(error)
+    except KeyError as error:
+        return None, f"lacks {error}: the run ended early or the file is of another version"
+    except (ArithmeticError, AttributeError, IndexError, MemoryError, OSError, RuntimeError, TypeError, ValueError) as error:
+        return None, f"cannot be drawn, it may be damaged: {' '.join(str(error).split())}"
+
+
 def read(path):
     """The result file as a Group, or a ResultError that says in one line what is wrong."""
     check_readable(path)
     try:
         with h5py.File(path, "r") as file:
-            root = group_of(file, "/")
-    except (OSError, RuntimeError, KeyError, ValueError, TypeError) as error:
+            root = group_of(file, "/", BEST_COMPRESSION * os.path.getsize(path))
+    except (OSError, RuntimeError, KeyError, ValueError, TypeError, MemoryError, OverflowError) as error:
         raise ResultError(reason(error)) from None
     if "study" not in root.groups and "branches" not in root.groups:
         raise ResultError("is an HDF5 file but not a result of whirl: it has neither /study nor /branches")
@@ -78,13 +123,15 @@ def reason(error):
     return f"is damaged: {text.strip(chr(34) + chr(39))}"
 
 
-def group_of(node, path):
+def group_of(node, path, most_bytes):
     group = Group(path, {key: plain(value) for key, value in node.attrs.items()})
     for name, child in node.items():
         child_path = f"{path.rstrip('/')}/{name}"
         if isinstance(child, h5py.Group):
-            group.groups[name] = group_of(child, child_path)
-        else:
+            group.groups[name] = group_of(child, child_path, most_bytes)
+        elif isinstance(child, h5py.Dataset):
+            if child.size and child.size * child.dtype.itemsize > most_bytes:
+                raise ResultError(f"is damaged: {child_path} claims more rows than the file holds")
             group.columns[name] = plain(child[()])
             group.units[name] = str(plain(child.attrs.get("units", "")))
             group.descriptions[name] = str(plain(child.attrs.get("description", "")))
@@ -94,6 +141,8 @@ def group_of(node, path):
 
 def plain(value):
     """Text as str, numbers as numpy has them."""
+    if isinstance(value, h5py.Empty):
+        return np.array([])
     if isinstance(value, bytes):
         return value.decode("utf-8", "replace")
     if isinstance(value, np.ndarray) and value.dtype.kind in "OS":
