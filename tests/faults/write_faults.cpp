@@ -2,8 +2,8 @@
 ///
 ///     WHIRL_FAULT=before|half|after|full|count WHIRL_FAULT_AT=17 WHIRL_FAULT_LOG=log LD_PRELOAD=libwhirl_write_faults.so whirl run ...
 ///
-/// Changes are counted from 1: writes at a place in a file, renaming, truncating, flushing to the disk. `before`, `half` and `after` kill around the chosen one;
-/// `full` lets no file grow from it on. The log gets "changes commits" (a commit is a write of 48 bytes at 0) at the end or at the kill.
+/// Changes are counted from 1: writes at a place in a file, renaming, truncating, flushing to the disk. `before`, `half` and `after` kill around the
+/// chosen one; `full` lets no file grow from it on. The log gets "changes commits" (a commit is a write of 48 bytes at 0) at the end or at the kill.
 
 #include <dlfcn.h>
 #include <fcntl.h>
