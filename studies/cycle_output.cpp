@@ -84,7 +84,7 @@ std::vector<PointColumn> CycleReader::extremes(const std::string& unit_of_time) 
                        look_at(u);
                        return extremes_(static_cast<Eigen::Index>(c), side);
                      },
-                     side == 0 && columns_[c].shown});
+                     side == 0 && (columns_[c].shown || columns_[c].name.starts_with("q"))});
   }
   all.push_back({"cycle_period", unit_of_time, "period of the cycle; 0 for equilibria", [this](In u) { return period(u); }, true});
   all.push_back({"trivial_error", "-", "distance from 1 of the multiplier of the cycle's own direction; 0 for equilibria", [this](In u) {
