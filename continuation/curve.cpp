@@ -220,6 +220,7 @@ bool Curve::count_multipliers(In u, Signature& signature) {
     ++signature.unstable[slot];
     if (mu.imag() == 0.0) ++(mu.real() > 0.0 ? signature.above : signature.flips)[slot];
   }
+  pairing_.list(eigenvalues_, group_, pairs_);
   return true;
 }
 
@@ -236,6 +237,10 @@ bool Curve::sample(In guess, In normal, Sample& out) {
 
 void Curve::copy_spectrum(Sample& to) const {
   copy_rates(to);
+  if (orbit_) {
+    to.pairs = pairs_;
+    to.settled.clear();
+  }
   if (f_.is_flow())
     for (int k = 0; k < parts_; ++k) to.kappa[static_cast<std::size_t>(k)] = spectrum_.kappa(k);
 }

@@ -16,6 +16,7 @@
 #include <algorithm>
 #include <array>
 
+#include "continuation/multiplier_pairs.hpp"
 #include "continuation/spectrum.hpp"
 #include "core/dense_lu.hpp"
 #include "core/orbit_problem.hpp"
@@ -45,6 +46,13 @@ struct Signature {
   }
 };
 
+/// Two multipliers that meet, whose places among the pairs of a point are `first` and `second`: a pair at 1 or at -1, or two pairs on either side.
+struct Collision {
+  enum class Kind { at_one, at_minus_one, of_two_pairs } kind;
+  int first, second;  // the same where a pair meets itself
+  bool operator==(const Collision& other) const = default;
+};
+
 struct Sample {
   Vector u, tangent;
   Signature signature;
@@ -52,6 +60,8 @@ struct Sample {
   int iterations = 0;
   std::array<GrowthRates, Signature::max_blocks> rates{};  ///< per block real parts, of a periodic motion per group |mu| - 1
   std::array<double, Signature::max_blocks> kappa{};  ///< per block, squared imaginary part of the complex pair nearest the imaginary axis; 0: none
+  std::vector<MultiplierPair> pairs = {};             ///< periodic motion: by group and angle
+  std::vector<Collision> settled = {};                ///< collisions of these pairs that lie behind the point and have been searched
 };
 
 struct CurveOptions {
@@ -103,7 +113,7 @@ class Curve {
   /// Unstable directions of the point last classified; what is neutral but for rounding is not.
   int unstable(const Signature& signature) const { return f_.is_flow() ? spectrum_.clearly_unstable() : signature.total_unstable(); }
   /// Test functions of the point last classified.
-  void copy_spectrum(Sample& to) const;  ///< rates and kappa of the last point classified
+  void copy_spectrum(Sample& to) const;  ///< rates, kappa and pairs of the last point classified
   void copy_rates(Sample& to) const { std::copy_n(rates_.begin(), parts_, to.rates.begin()); }
   static int spectrum_size(const Problem& f);
   /// The problem as one of periodic motions; null if it is none.
@@ -142,6 +152,8 @@ class Curve {
   Eigen::VectorXi group_;         // of each multiplier
   int parts_;
   std::array<GrowthRates, Signature::max_blocks> rates_{};
+  MultiplierPairs pairing_;
+  std::vector<MultiplierPair> pairs_;
   Vector weight_, r_, normal_;                        // normal_: weighted
   bool whole_;                                        // no symmetry: block 0 is everything, in order
   int state_;                                         // size of block 0

@@ -70,19 +70,37 @@ bool EventFinder::between(const Sample& a, const Sample& b, double sigma, Sample
   return ++samples_ <= options_.most_samples && curve_.between(a, b, sigma, out);
 }
 
-std::vector<SpecialPoint>& EventFinder::find(const Sample& before, const Sample& a, const Sample& b, bool last) {
+void EventFinder::follow(const Sample& before, const Sample& a, Sample& b) {
+  if (curve_.orbit()) collisions_.follow(before, a, b);
+}
+
+std::vector<SpecialPoint>& EventFinder::find(const Sample& before, const Sample& a, Sample& b, bool last) {
   found_.clear();
   samples_ = 0;
   note_neutral(before, a, b);
+  if (curve_.orbit()) collisions_.search(before, a, b, last);
   const bool turned = turns_at(before, a, b), was_changed = changed(before.signature, a.signature), is_changed = changed(a.signature, b.signature);
+  const bool parted_behind = curve_.orbit() && !collisions_.behind().empty(), parted = curve_.orbit() && !collisions_.ahead().empty();
   // The neighbours of a step with an event are searched as it is itself: there two more may cancel, and nothing seems to turn.
-  if (!was_changed && turned) look_closer(b, before, a, 0);  // b only tells how much things moved
+  if (parted_behind) explain_parts(before, collisions_.behind(), a);
+  else if (!was_changed && turned) look_closer(b, before, a, 0);  // b only tells how much things moved
   else if (!was_changed && is_changed && !quiet_beside(before, a, b)) look_closer(before, before, a, beside(), true);
-  if (is_changed) explain(a, b, 1);
+  if (parted) explain_parts(a, collisions_.ahead(), b);
+  else if (is_changed) explain(a, b, 1);
   else if (turned || last) look_closer(before, a, b, 0);
   else if (was_changed && !quiet_beside(b, a, before)) look_closer(a, a, b, beside(), true);
   std::sort(found_.begin(), found_.end(), [&](const auto& p, const auto& q) { return fraction(curve_, a, b, p.u) < fraction(curve_, a, b, q.u); });
   return found_;
+}
+
+// A step in parts whose ends differ where something lies between. What changed in a step behind has been explained when it was taken.
+void EventFinder::explain_parts(const Sample& a, const std::vector<Sample>& between, const Sample& b) {
+  const Sample* from = &a;
+  for (const Sample& to : between) {
+    if (changed(from->signature, to.signature)) explain(*from, to, 1);
+    from = &to;
+  }
+  if (changed(from->signature, b.signature)) explain(*from, b, 1);
 }
 
 void EventFinder::explain(const Sample& a, const Sample& b, int depth) {
@@ -169,7 +187,9 @@ bool EventFinder::turns_at(const Sample& before, const Sample& a, const Sample& 
 }
 
 double EventFinder::value(const Sample& s, const TestFunction& t) const {
-  return t.part < 0 ? s.tangent[curve_.problem().size()] : s.rates[static_cast<std::size_t>(t.part)].ranked(t.rank);
+  if (t.part < 0) return s.tangent[curve_.problem().size()];
+  const auto& rates = s.rates[static_cast<std::size_t>(t.part)];
+  return t.rank == 0 ? rates.pair() : rates.ranked(t.rank);
 }
 
 // Where the chord of the test function passes zero, in parts of the way; half way if it does not.

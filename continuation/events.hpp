@@ -8,14 +8,17 @@
 /// and what remains on either side is explained in turn. What cannot be located is returned as `unresolved` with its bracket.
 ///
 /// Two events that cancel change no signature. They are announced by functions that come closer to zero than they move: the slope of the parameter
-/// along the curve, and the growth rates in order of size (growth_rates.hpp), three on either side of zero. Such a step is halved, up to
-/// `suspicion_depth` times. What an event leaves of its step, and the steps beside it, are looked at once half way, and halved only where something
-/// turns near zero or the event's own function does not go on as it left.
+/// along the curve, the growth rates in order of size (growth_rates.hpp), three on either side of zero, and the product of the pair nearest to zero.
+/// Such a step is halved, up to `suspicion_depth` times. Multipliers that meet, leave the unit circle and return: collisions.hpp. What an event
+/// leaves of its step, and the steps beside it, are looked at once half way, and halved only where something turns near zero or the event's own
+/// function does not go on as it left.
 
 #include <algorithm>
+#include <cmath>
 #include <functional>
 
 #include "continuation/branch.hpp"
+#include "continuation/collisions.hpp"
 #include "continuation/curve.hpp"
 #include "continuation/special_points.hpp"
 
@@ -26,16 +29,26 @@ struct EventOptions {
   int max_depth = 24;        ///< halvings of a step before a change counts as unresolved
   int suspicion_depth = 6;   ///< halvings while nothing changes but something comes near; then the vertex of a parabola
   int most_samples = 2000;   ///< points looked at within one step
+  CollisionOptions collisions = {};
 };
 
 class EventFinder {
  public:
-  EventFinder(Curve& curve, const EventOptions& options) : curve_(curve), options_(options) {}
+  EventFinder(Curve& curve, const EventOptions& options) : curve_(curve), options_(options), collisions_(curve, options.collisions) {}
+
+  /// Continues the multipliers of a in b, of periodic motions; to be called before `find` and the questions below.
+  void follow(const Sample& before, const Sample& a, Sample& b);
+  bool suspects(const Sample& before, const Sample& a, const Sample& b, bool last) {
+    return curve_.orbit() && collisions_.suspects(before, a, b, last);
+  }
+  /// After `find`: points between a and b lie off the curve that the step seemed to follow.
+  bool passed_over() const { return curve_.orbit() && collisions_.passed_over(); }
+  const CollisionSearch& collisions() const { return collisions_; }
 
   /// Special points strictly between a and b in order; `before` is the accepted point before a (or a itself). Where nothing changed but something
   /// turned round at a near zero, the steps on both sides of a are searched. `last`: no further point will show a turn at b, so look now.
   /// Valid until the next call.
-  std::vector<SpecialPoint>& find(const Sample& before, const Sample& a, const Sample& b, bool last = false);
+  std::vector<SpecialPoint>& find(const Sample& before, const Sample& a, Sample& b, bool last = false);
   bool turns_at(const Sample& before, const Sample& a, const Sample& b);
 
   /// Drops the folds that the turn of a branch upright at its branch point looks like, where rounding had both found apart.
@@ -47,6 +60,7 @@ class EventFinder {
   bool changed(const Signature& a, const Signature& b) const { return unstable_changed(a, b) || !changes(a, b).empty(); }
   bool unstable_changed(const Signature& a, const Signature& b) const;
   void explain(const Sample& a, const Sample& b, int depth);
+  void explain_parts(const Sample& a, const std::vector<Sample>& between, const Sample& b);
   bool neutral(const Sample& s, int block) const;
   void note_neutral(const Sample& before, const Sample& a, const Sample& b);
   /// What is left of a step beside an event: searched unless everything goes its way quietly.
@@ -55,9 +69,10 @@ class EventFinder {
   bool quiet_rest(const Sample& near, const Sample& far, double offset, const Slope& slope);
   bool quiet_beside(const Sample& far, const Sample& near, const Sample& beyond);
   bool look_half_way(const Sample& a, const Sample& b, Sample& middle);
-  /// What may pass zero: the slope of the parameter along the curve, or the rank-th largest growth rate of a block or group.
+  /// What may pass zero: the slope of the parameter along the curve, the rank-th largest growth rate of a block or group, or the product of the pair
+  /// of eigenvalues nearest to zero.
   struct TestFunction {
-    int part, rank;  // part -1: the slope
+    int part, rank;  // part -1: the slope; rank 0: the pair
   };
   double value(const Sample& s, const TestFunction& t) const;
   double secant(const Sample& a, const Sample& b, const TestFunction& t) const;
@@ -68,6 +83,7 @@ class EventFinder {
     for (int k = 0; k < curve_.parts(); ++k) {
       if (neutral_[static_cast<std::size_t>(k)]) continue;
       const auto& rates = here.rates[static_cast<std::size_t>(k)];
+      if (std::isfinite(rates.pair()) && !f(TestFunction{k, 0})) return false;
       const int last = std::min(rates.positive() + 3, rates.count());
       for (int rank = std::max(1, rates.positive() - 2); rank <= last; ++rank) {
         if (!f(TestFunction{k, rank})) return false;
@@ -95,6 +111,7 @@ class EventFinder {
 
   Curve& curve_;
   EventOptions options_;
+  CollisionSearch collisions_;
   std::vector<SpecialPoint> found_;
   int samples_ = 0;                                                               // of the step at hand
   std::array<bool, std::tuple_size_v<decltype(Signature::unstable)>> neutral_{};  // blocks whose events in this step would be rounding

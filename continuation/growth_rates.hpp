@@ -15,6 +15,7 @@ class GrowthRates {
   void clear(double size = 1.0) {
     positive_ = count_ = 0;
     size_ = size;
+    pair_ = std::numeric_limits<double>::infinity();
     above_.fill(std::numeric_limits<double>::infinity());
     below_.fill(-std::numeric_limits<double>::infinity());
   }
@@ -29,6 +30,10 @@ class GrowthRates {
         if (rate > other) std::swap(rate, other);
     }
   }
+  /// Product of the two eigenvalues, a complex pair or neighbours on the real axis, whose product is nearest to zero; infinite where there are no
+  /// two. Where a pair meets the axis beside zero its real parts tell too late that one of them may pass: their product goes on smoothly.
+  double pair() const { return pair_; }
+  void set_pair(double product) { pair_ = product; }
   int positive() const { return positive_; }
   int count() const { return count_; }
   double size() const { return size_; }
@@ -42,7 +47,7 @@ class GrowthRates {
  private:
   static constexpr int kept = 4;  // on either side: as many as two pairs that cross at once
   int positive_ = 0, count_ = 0;
-  double size_ = 1.0;
+  double size_ = 1.0, pair_ = std::numeric_limits<double>::infinity();
   std::array<double, kept> above_, below_;  // nearest first
 };
 

@@ -16,6 +16,7 @@ class Parabola {
     slope_ = before + curvature_ * (s1 - s0);
     none_ = std::isinf(f0) && std::isinf(f1) && std::isinf(f2);
   }
+  double curvature() const { return curvature_; }  ///< half the second derivative
   double turn() const { return s_ - 0.5 * slope_ / curvature_; }
   double at(double s) const { return f_ + (s - s_) * (slope_ + curvature_ * (s - s_)); }
   /// Nearer to zero on the way than it moves, or to zero.

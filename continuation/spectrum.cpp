@@ -92,9 +92,26 @@ bool Spectrum::compute(MatrixIn jacobian) {
       if (!std::isfinite(z.real() + z.imag())) return false;
       rates_[k].add(z.real());
     }
+    if (m > 1) rates_[k].set_pair(nearest_pair(first, m));
     first += m;
   }
   return true;
+}
+
+// Of |z|^2 of complex pairs and of products of neighbours on the real axis the one nearest to zero. The real ones next to zero are enough.
+double Spectrum::nearest_pair(int first, int count) const {
+  constexpr double none = std::numeric_limits<double>::infinity();
+  double nearest = none, below[2] = {-none, -none}, above[2] = {none, none};
+  for (int i = first; i < first + count; ++i) {
+    const double x = eigenvalues_[i].real(), y = eigenvalues_[i].imag();
+    if (y > 0.0) nearest = std::min(nearest, x * x + y * y);
+    if (y != 0.0) continue;
+    if (x <= 0.0 && x > below[1]) below[1] = std::min(x, below[0]), below[0] = std::max(x, below[0]);
+    if (x > 0.0 && x < above[1]) above[1] = std::max(x, above[0]), above[0] = std::min(x, above[0]);
+  }
+  for (const double product : {below[0] * below[1], above[0] * above[1], below[0] * above[0]})
+    if (std::abs(product) < std::abs(nearest)) nearest = product;
+  return nearest;
 }
 
 int Spectrum::unstable() const {

@@ -26,6 +26,7 @@ class Spectrum {
   double kappa(int block) const;
 
  private:
+  double nearest_pair(int first, int count) const;
   const Blocks* blocks_;
   std::vector<Matrix> block_;
   std::vector<std::unique_ptr<Eigen::EigenSolver<Matrix>>> solver_;

@@ -12,8 +12,9 @@
 namespace whirl::continuation {
 
 namespace {
-constexpr double rounding = 1e-11;  // |x| below it is zero: what Newton leaves of a coordinate that is zero
-}
+constexpr double rounding = 1e-11;      // |x| below it is zero: what Newton leaves of a coordinate that is zero
+constexpr int most_neutral_points = 4;  // beside a branch point; more are neutral by nature, as without damping
+}  // namespace
 
 void WalkOptions::validate() const {
   if (!(lower < upper) || !std::isfinite(lower) || !std::isfinite(upper))
@@ -25,6 +26,19 @@ void WalkOptions::validate() const {
     throw std::invalid_argument(fmt::format("max_angle_deg must be in (0, 90), got {}", max_angle_deg));
   if (max_points < 2) throw std::invalid_argument(fmt::format("max_points must be >= 2, got {}", max_points));
 }
+
+namespace {
+// Next to the branch point that it leaves, a motion's critical multiplier stands on the unit circle but for rounding: it counts on neither side.
+bool neutral_multiplier(const Curve& curve, const Sample& s) {
+  constexpr double rounding_of_multipliers = 1e-9;
+  if (!curve.orbit()) return false;
+  for (int k = 0; k < curve.parts(); ++k) {
+    const GrowthRates& rates = s.rates[static_cast<std::size_t>(k)];
+    if (std::min(std::abs(rates.ranked(rates.positive())), std::abs(rates.ranked(rates.positive() + 1))) < rounding_of_multipliers) return true;
+  }
+  return false;
+}
+}  // namespace
 
 // Everything the loop touches, allocated once per walk.
 struct Walker::State {
@@ -304,17 +318,20 @@ void Walker::lengthen_step() {
 bool Walker::locate_events() {
   State& s = *s_;
   if (!options_.locate_events || !s.has_signature) return true;
+  s.finder.follow(*s.before, *s.now, *s.next);
   for (const int r : s.broken) {
     if (!mirror_crossing(s.curve, *s.now, *s.next, r, s.crossing)) continue;
     // Stop on the branch point; what lies between is still looked at. Not nearer than 1e-3 of the step: the critical eigenvalue and the
     // slope of the parameter vanish with the square of the distance.
     const Vector chord = s.next->u - s.now->u;
     Sample last;
-    if (s.curve.sample(s.crossing.u - 1e-3 * s.step_taken * s.crossing.tangent, chord, last))
+    if (s.curve.sample(s.crossing.u - 1e-3 * s.step_taken * s.crossing.tangent, chord, last)) {
+      s.finder.follow(*s.before, *s.now, last);
       for (auto& e : s.finder.find(*s.before, *s.now, last)) {
         e.arclength = s.arclength + s.curve.length(e.u - s.now->u);
         s.branch.special.push_back(std::move(e));
       }
+    }
     s.next->u = s.crossing.u;
     s.step_taken = s.curve.length(s.next->u - s.now->u);
     s.crossing.arclength = s.arclength + s.step_taken;
@@ -326,8 +343,9 @@ bool Walker::locate_events() {
   const int first = s.branch.start_reason == StopReason::known_branch_point ? 1 : 0;
   const bool last = s.stop != StopReason::none || s.accepted == first;
   if (last || !(s.now->signature == s.next->signature) || !(s.before->signature == s.now->signature) ||
-      s.finder.turns_at(*s.before, *s.now, *s.next)) {
+      s.finder.turns_at(*s.before, *s.now, *s.next) || s.finder.suspects(*s.before, *s.now, *s.next, last)) {
     auto& found = s.finder.find(*s.before, *s.now, *s.next, last);
+    if (s.finder.passed_over() && s.step > options_.least_step_on_suspicion * options_.max_step) return false;
     if (std::any_of(found.begin(), found.end(), [this](const auto& e) { return asks_for_shorter_step(e); })) return false;
     s.refinements = 0;
     for (auto& e : found) {
@@ -465,7 +483,7 @@ void Walker::accept() {
   std::swap(s.now, s.next);
   s.has_before = s.has_signature;
   if (!s.has_signature) *s.before = *s.now;
-  s.has_signature = true;
+  s.has_signature = s.has_signature || s.accepted >= most_neutral_points || !neutral_multiplier(s.curve, *s.now);
   ++s.accepted;
   keep_scale();
   if (s.stop == StopReason::none && s.largest_x > s.unbounded) s.stop = StopReason::unbounded;

@@ -42,9 +42,10 @@ struct WalkOptions {
   CurveOptions corrector;
   EventOptions events;
   bool locate_events = true;
-  bool explain_changes = true;      ///< shorten a step whose change no event explains; off on curves of special points: new borders are such a change
-  std::vector<double> user_values;  ///< parameter values to hit exactly, reported as UZ
-  std::vector<Observable> peaks;    ///< their extrema along the branch are reported as RP
+  bool explain_changes = true;  ///< shorten a step whose change no event explains; off on curves of special points: new borders are such a change
+  double least_step_on_suspicion = 1e-4;     ///< over max_step: a step this short is not refused for what lies between its ends
+  std::vector<double> user_values;           ///< parameter values to hit exactly, reported as UZ
+  std::vector<Observable> peaks;             ///< their extrema along the branch are reported as RP
   std::vector<CoordinateBound> bounds = {};  ///< beside the parameter's range
   void validate() const;
 };

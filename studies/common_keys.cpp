@@ -245,7 +245,8 @@ void warn_of_unresolved(const continuation::Branch& b, RunContext& context) {
 
 }  // namespace
 
-ExitStatus finish(ResultFile& file, RunContext& context, const std::vector<continuation::Branch>& branches) {
+ExitStatus finish(ResultFile& file, RunContext& context, const std::vector<continuation::Branch>& branches,
+                  const std::vector<std::string>& failures) {
   ExitStatus status = ExitStatus::ok;
   std::vector<std::string> reasons;
   for (const auto& b : branches) {
@@ -260,7 +261,11 @@ ExitStatus finish(ResultFile& file, RunContext& context, const std::vector<conti
     if (early(b.start_reason) || early(b.stop_reason)) status = ExitStatus::numerical_failure;
     warn_of_unresolved(b, context);
   }
-  if (branches.empty()) status = ExitStatus::numerical_failure;
+  if (branches.empty() || !failures.empty()) status = ExitStatus::numerical_failure;
+  for (const auto& failure : failures) {
+    context.warn(failure);
+    reasons.push_back(failure);
+  }
   return finish(file, context, status, reasons);
 }
 

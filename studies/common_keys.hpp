@@ -37,7 +37,9 @@ void write_study(ResultFile& file, const Configuration& c);
 std::string frequency_label(double omega);
 void write_cable_numbers(ResultFile& file, const models::Cable<double>& cable);
 /// Warnings and stop reasons into /study; the exit status they amount to.
-ExitStatus finish(ResultFile& file, RunContext& context, const std::vector<continuation::Branch>& branches);
+/// `failures`: what else was not reached; each is a warning, a stop reason and exit status 1.
+ExitStatus finish(ResultFile& file, RunContext& context, const std::vector<continuation::Branch>& branches,
+                  const std::vector<std::string>& failures = {});
 /// The same where the outcome is known: `status`, or that the user stopped the run, with the reasons that stopped its parts.
 ExitStatus finish(ResultFile& file, const RunContext& context, ExitStatus status, const std::vector<std::string>& reasons = {});
 

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <limits>
 
 #include "continuation/period_doubling.hpp"
 #include "core/kinsol.hpp"
@@ -20,6 +21,33 @@ constexpr int truncation_samples = 16;  // points of a branch at which the trunc
 
 bool has(const HarmonicBalance& hb, const std::vector<int>& active, const std::string& subtype) {
   return std::any_of(active.begin(), active.end(), [&](int r) { return hb.reflections()[static_cast<std::size_t>(r)].subtype == subtype; });
+}
+
+// Unstable directions at the motion u of a branch, by the point or special point before it.
+int told_unstable(const Branch& b, In u) {
+  const auto n = u.size() - 1;
+  double least = std::numeric_limits<double>::infinity();
+  int told = -1;
+  Vector from, to;
+  int after = -1;  // `from`; -1: at a branch point, where it is undefined
+  const auto look = [&](const Vector& knot, int before_knot, int after_knot) {
+    to = knot;
+    const double part = from.size() > 0 && from[n] != to[n] ? (u[n] - from[n]) / (to[n] - from[n]) : -1.0;
+    const double distance = part >= 0.0 && part <= 1.0 ? (from + part * (to - from) - u).norm() : least;
+    if (distance < least) {
+      least = distance;
+      told = after < 0 ? before_knot : after;
+    }
+    from = to;
+    after = after_knot;
+  };
+  std::size_t next = 0;
+  for (int i = 0; i < b.points(); ++i) {
+    for (; next < b.special.size() && b.special[next].arclength < b.arclength(i); ++next)
+      look(b.special[next].u, b.special[next].unstable_before, b.special[next].unstable_after);
+    look(b.u(i), b.n_unstable(i), i == 0 && b.start_reason == StopReason::known_branch_point ? -1 : b.n_unstable(i));
+  }
+  return told;
 }
 
 bool keeps(const HarmonicBalance& hb, In u, const std::string& subtype) { return has(hb, active_reflections(hb, u.head(hb.size()), 1e-9), subtype); }
@@ -160,7 +188,8 @@ std::vector<OrbitBranches::Motion> OrbitBranches::motions_at(double p) const {
       Eigen::VectorXcd mu(hb.multiplier_count());
       Eigen::VectorXi group(hb.multiplier_count());
       const bool known = static_cast<const OrbitProblem&>(hb).multipliers(u, mu, group);
-      found.push_back({network(level).branches()[static_cast<std::size_t>(branch)].name, level, u, known && mu.cwiseAbs().maxCoeff() <= 1.0});
+      const Branch& b = network(level).branches()[static_cast<std::size_t>(branch)];
+      found.push_back({b.name, level, u, known && mu.cwiseAbs().maxCoeff() <= 1.0, told_unstable(b, u)});
     }
   }
   return found;

@@ -53,6 +53,7 @@ class OrbitBranches {
     int level;
     Vector u;
     bool stable;
+    int told;  ///< unstable directions that the branch has there, by its points and special points; -1: its course there is not known
   };
   std::vector<Motion> motions_at(double p) const;
 

@@ -158,11 +158,31 @@ std::vector<OrbitCheck> check_orbits(const OrbitBranches& orbits, const std::vec
     check.ok = period.ok;
     if (!period.ok) return;
     check.defect = (period.end - start).norm() / (start.norm() > 0.0 ? start.norm() : 1.0);
-    check.multiplier = farthest(hb.floquet(check.motion.u).multipliers, period.monodromy.eigenvalues());
+    const Eigen::VectorXcd integrated = period.monodromy.eigenvalues();
+    check.multiplier = farthest(hb.floquet(check.motion.u).multipliers, integrated);
+    const double sure = 10.0 * check.multiplier + 1e-7;  // a multiplier nearer to the unit circle is on neither side
+    for (const auto& mu : integrated) {
+      check.least_unstable += std::abs(mu) > 1.0 + sure ? 1 : 0;
+      check.most_unstable += std::abs(mu) > 1.0 - sure ? 1 : 0;
+    }
     context.progress.show(fmt::format("checking motions by integration, {} of {}", ++done, checks.size()));
   });
   context.progress.clear();
   return checks;
+}
+
+std::vector<std::string> contradictions(const std::vector<OrbitCheck>& checks, const std::string& parameter, double tolerance) {
+  std::vector<std::string> lines;
+  for (const auto& c : checks) {
+    const std::string where = fmt::format("{} at {} = {:g}", c.motion.branch, parameter, c.p);
+    if (!c.ok) continue;
+    if (c.motion.told >= 0 && (c.motion.told < c.least_unstable || c.motion.told > c.most_unstable))
+      lines.push_back(fmt::format("verification contradicts {}: told with {} unstable directions, integrated it has {}", where, c.motion.told,
+                                  c.motion.told < c.least_unstable ? c.least_unstable : c.most_unstable));
+    if (c.motion.stable && c.defect > tolerance)
+      lines.push_back(fmt::format("verification contradicts {}: integrated over its period it misses its start by {:.1e}", where, c.defect));
+  }
+  return lines;
 }
 
 void write_checks(ResultFile& file, const OrbitBranches& orbits, const std::vector<OrbitCheck>& checks) {

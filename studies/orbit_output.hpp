@@ -24,8 +24,12 @@ struct OrbitCheck {
   double defect;      ///< |end - start| over |start|
   double multiplier;  ///< largest distance of a multiplier from the nearest integrated one
   bool ok;
+  int least_unstable = 0, most_unstable = 0;  ///< integrated multipliers outside the unit circle: surely, and at most
 };
 std::vector<OrbitCheck> check_orbits(const OrbitBranches& orbits, const std::vector<double>& values, RunContext& context);
+/// What the checks say against the branches, a line each: more or fewer unstable directions than told, a stable motion that is none. `tolerance` of
+/// the defect.
+std::vector<std::string> contradictions(const std::vector<OrbitCheck>& checks, const std::string& parameter, double tolerance);
 void write_checks(ResultFile& file, const OrbitBranches& orbits, const std::vector<OrbitCheck>& checks);
 std::string checks_text(const OrbitBranches& orbits, const std::vector<OrbitCheck>& checks, const std::string& parameter);
 

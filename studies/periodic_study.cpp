@@ -266,17 +266,16 @@ std::string chart_text(const Setup& s, const Chart& chart) {
   return out;
 }
 
-void verify(const Setup& s, const OrbitBranches& orbits, ResultFile& file, RunContext& context) {
+// What integration says against the branches.
+std::vector<std::string> verify(const Setup& s, const OrbitBranches& orbits, ResultFile& file, RunContext& context) {
   const auto checks = check_orbits(orbits, s.checked, context);
-  if (checks.empty()) return;
+  if (checks.empty()) return {};
   write_checks(file, orbits, checks);
   int number = 0;
   for (const auto& check : checks) write_orbit(file, fmt::format("/verification/motions/{:03}", ++number), orbits, check.motion);
   file.flush();
   if (!context.quiet) fmt::print(stderr, "\n{}", checks_text(orbits, checks, s.parameter));
-  for (const auto& check : checks)
-    if (check.ok && check.defect > 1e3 * std::max(s.orbits.truncation_tolerance, 1e-9) && check.motion.stable)
-      context.warn(fmt::format("the motion of {} at {:g} misses its start by {:.1e} when integrated", check.motion.branch, check.p, check.defect));
+  return contradictions(checks, s.parameter, 1e3 * std::max(s.orbits.truncation_tolerance, 1e-9));
 }
 
 ExitStatus run(const Configuration& c, RunContext& context) {
@@ -304,14 +303,14 @@ ExitStatus run(const Configuration& c, RunContext& context) {
   file.flush();
   if (context.json) fmt::print("{}", output.json(branches));
   if (!context.quiet) fmt::print(stderr, "{}", output.text(branches));
-  if (!interrupted) verify(s, orbits, file, context);
+  const auto failures = interrupted ? std::vector<std::string>{} : verify(s, orbits, file, context);
   if (!s.second.empty() && !interrupted) {
     const Chart chart = follow_all(c, s, orbits, file, context);
     const auto units = forced_system_of(c, {s.parameter, s.second}).lens_units;
     write_chart_points(file, s, units, chart);
     if (!context.quiet) fmt::print(stderr, "\n{}", chart_text(s, chart));
   }
-  return finish(file, context, branches);
+  return finish(file, context, branches, failures);
 }
 
 }  // namespace
