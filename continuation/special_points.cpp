@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "continuation/augmented.hpp"
+#include "continuation/multiple_point.hpp"
 #include "continuation/period_doubling.hpp"
 #include "continuation/switching.hpp"
 #include "continuation/torus.hpp"
@@ -77,6 +78,7 @@ bool special_point_near(const Curve& curve, const EventKind& kind, const Sample&
   if (kind.type == EventType::hopf && !(static_cast<HopfSystem&>(*system).kappa(r.x) > 0.0)) return false;
   if (kind.type == EventType::torus && !(static_cast<TorusSystem&>(*system).kappa(r.x) > 0.0)) return false;
   if (auto* point = dynamic_cast<BranchPointSystem*>(system.get()); point && !point->persists(r.x)) return false;
+  if (kind.type == EventType::branch_point && kind.block == 0 && multiple_point_near(f, system->base_point(r.x))) return false;  // no simple one
   out = {};
   out.type = kind.type;
   out.block = kind.block;
@@ -85,7 +87,7 @@ bool special_point_near(const Curve& curve, const EventKind& kind, const Sample&
   out.residual = r.residual;
   out.subtype = kind.type == EventType::branch_point ? blocks.subtype[static_cast<std::size_t>(kind.block)] : "";
   if (auto* singular = dynamic_cast<SingularSystem*>(system.get())) out.null_vector = singular->null_vector(r.x);
-  if (kind.type == EventType::branch_point && kind.block == 0) (void)departures(f, out);  // tells pitchfork from transcritical
+  if (kind.type == EventType::branch_point && kind.block == 0) name_branch_point(f, out);
   if (kind.type == EventType::hopf) out.frequency = std::sqrt(static_cast<HopfSystem&>(*system).kappa(r.x));
   if (kind.type == EventType::torus) {
     const auto& torus = static_cast<TorusSystem&>(*system);

@@ -261,8 +261,12 @@ ExitStatus finish(ResultFile& file, RunContext& context, const std::vector<conti
     if (early(b.start_reason) || early(b.stop_reason)) status = ExitStatus::numerical_failure;
     warn_of_unresolved(b, context);
   }
-  if (branches.empty() || !failures.empty()) status = ExitStatus::numerical_failure;
+  if (branches.empty()) {
+    status = ExitStatus::numerical_failure;
+    reasons.emplace_back("no branch: no start led to a solution");
+  }
   for (const auto& failure : failures) {
+    status = ExitStatus::numerical_failure;
     context.warn(failure);
     reasons.push_back(failure);
   }
