@@ -134,7 +134,7 @@ void set_normal_form(const Problem& f, SpecialPoint& point, const Vector& sense,
   const double quadratic = 0.5 * w.dot(bvv);
   // At a branch point the centre manifold bends with the parameter too; w'B(v, v) = 0 marks the pitchfork.
   const bool told = !point.subtype.empty(), broken = point.block > 0 || point.subtype == "PF";
-  const bool pitchfork = point.type == EventType::branch_point && (told ? broken : std::abs(quadratic) < 1e-7 * (1.0 + bvv.norm()));
+  const bool pitchfork = point.type == EventType::branch_point && (told ? broken : std::abs(quadratic) <= 1e-7 * w.norm() * bvv.norm());
   point.coefficient = pitchfork ? w.dot(forms.C(v, v, v)) / 6.0 + 0.5 * w.dot(forms.B(v, solve_off_null(a, v, w, Vector(-bvv)))) : quadratic;
   point.has_coefficient = std::isfinite(point.coefficient);
 }

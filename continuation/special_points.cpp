@@ -9,7 +9,7 @@
 #include "continuation/period_doubling.hpp"
 #include "continuation/switching.hpp"
 #include "continuation/torus.hpp"
-#include "core/newton.hpp"
+#include "core/problem_in_units.hpp"
 
 namespace whirl::continuation {
 namespace {
@@ -26,6 +26,32 @@ bool period_doubling(const Curve& curve, int group, const Sample& near, SpecialP
   out.tangent = near.tangent;
   out.residual = at->residual;
   return true;
+}
+
+// A part of its range: smaller values of the parameter are located to a part of that.
+constexpr double least_part = 1e-6;
+
+// Sizes of the unknowns (x, p, what else) of a defining system near its start.
+Vector sizes(const Curve& curve, const AugmentedSystem& system, In start, In u, int extra) {
+  const Problem& f = curve.problem();
+  const Eigen::Index states = system.size() - 1 - extra;
+  Vector all = Vector::Constant(system.size(), curve.x_scale());
+  all[states] = std::clamp(std::abs(u[f.size()]), least_part * curve.p_scale(), curve.p_scale());
+  for (Eigen::Index i = states + 1; i < all.size(); ++i) all[i] = start[i] != 0.0 ? std::abs(start[i]) : 1.0;
+  if (dynamic_cast<const BranchPointSystem*>(&system)) {  // beta stands in the equations: the size of their terms
+    Matrix j(f.size(), f.size() + f.parameters());
+    f.jacobian(u, j);
+    all[states + 1] = std::max(curve.x_scale() * j.leftCols(f.size()).norm(), curve.p_scale() * j.col(f.size()).norm());
+    if (!(all[states + 1] > 0.0)) all[states + 1] = 1.0;
+  }
+  return all;
+}
+
+// Is the last unknown, beta of a branch point, zero up to rounding? Then two curves cross and do not just come near.
+bool persists(In y, const Vector& units) {
+  constexpr double rounding = 1e-8;
+  const Eigen::Index beta = units.size() - 1;
+  return std::abs(y[beta]) <= rounding * units[beta];
 }
 
 std::unique_ptr<AugmentedSystem> torus_system(const Curve& curve, int group, const Sample& near) {
@@ -73,11 +99,13 @@ bool special_point_near(const Curve& curve, const EventKind& kind, const Sample&
   }
   const Vector start = system->unknowns(near.u);
   if (!start.allFinite()) return false;
-  NewtonResult r = newton(*system, start, {.tolerance = 1e-13, .max_iterations = 12});
+  const bool has_extra = kind.type == EventType::hopf || kind.type == EventType::torus || (kind.type == EventType::branch_point && kind.block == 0);
+  const Vector units = sizes(curve, *system, start, near.u, has_extra ? 1 : 0);
+  NewtonResult r = newton_in_units(*system, start, units, {.tolerance = 1e-13, .max_iterations = 12});
   if (!r.settled()) return false;
   if (kind.type == EventType::hopf && !(static_cast<HopfSystem&>(*system).kappa(r.x) > 0.0)) return false;
   if (kind.type == EventType::torus && !(static_cast<TorusSystem&>(*system).kappa(r.x) > 0.0)) return false;
-  if (auto* point = dynamic_cast<BranchPointSystem*>(system.get()); point && !point->persists(r.x)) return false;
+  if (kind.type == EventType::branch_point && kind.block == 0 && !persists(r.x, units)) return false;
   if (kind.type == EventType::branch_point && kind.block == 0 && multiple_point_near(f, system->base_point(r.x))) return false;  // no simple one
   out = {};
   out.type = kind.type;
@@ -132,7 +160,8 @@ bool mirror_crossing(const Curve& curve, const Sample& a, const Sample& b, int r
   for (std::size_t k = 1; k < blocks.indices.size(); ++k) {
     if (blocks.indices[k].empty() || f.reflections()[static_cast<std::size_t>(r)].signs[blocks.indices[k].front()] > 0.0) continue;
     SingularSystem system(f, blocks.indices[0], blocks.indices[k], guess);
-    const NewtonResult result = newton(system, system.unknowns(guess), {.tolerance = 1e-13, .max_iterations = 15});
+    const Vector start = system.unknowns(guess);
+    const NewtonResult result = newton_in_units(system, start, sizes(curve, system, start, guess, 0), {.tolerance = 1e-13, .max_iterations = 15});
     if (!result.settled()) continue;
     const Vector u = system.base_point(result.x);
     const double chord = curve.length(b.u - a.u);
@@ -154,16 +183,37 @@ bool mirror_crossing(const Curve& curve, const Sample& a, const Sample& b, int r
   return false;
 }
 
+namespace {
+
+// Size of [r_x r_p] in the metric around u: the largest at points a tenth of the scales away, since at u itself all of it may vanish.
+double usual_size(const Curve& curve, In u) {
+  constexpr double away = 0.1;
+  const Problem& f = curve.problem();
+  Vector scales = Vector::Constant(f.size() + 1, curve.x_scale());
+  scales[f.size()] = curve.p_scale();
+  Matrix j(f.size(), f.size() + 1);
+  double size = 0.0;
+  for (int i = 0; i <= f.size(); ++i) {
+    Vector beside = u;
+    beside[i] += away * scales[i];
+    f.jacobian(beside, j);
+    if (j.allFinite()) size = std::max(size, (j * scales.asDiagonal()).norm());
+  }
+  return size;
+}
+
+}  // namespace
+
 bool turns_upright(const Curve& curve, const SpecialPoint& point) {
   const Problem& f = curve.problem();
   Matrix j(f.size(), f.size() + f.parameters());
   f.jacobian(point.u, j);
   // Is r_p in the range of r_x, hence orthogonal to all its left null vectors?
   const Indices& state = curve.blocks().indices[0];
-  const Matrix a = j(state, state);
-  const Vector rp = j(state, f.size());
+  const Matrix a = curve.x_scale() * j(state, state);
+  const Vector rp = curve.p_scale() * j(state, f.size());
   const Eigen::JacobiSVD<Matrix> svd(a, Eigen::ComputeFullU);
-  const double small = 1e-6 * j.norm();
+  const double small = 1e-6 * usual_size(curve, point.u);
   for (Eigen::Index k = 0; k < a.rows(); ++k)
     if (svd.singularValues()[k] <= small && std::abs(svd.matrixU().col(k).dot(rp)) > small) return false;
   return true;

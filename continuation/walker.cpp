@@ -7,13 +7,35 @@
 #include <cmath>
 #include <numbers>
 
-#include "core/newton.hpp"
+#include "continuation/natural_size.hpp"
+#include "core/problem_in_units.hpp"
 
 namespace whirl::continuation {
 
 namespace {
-constexpr double rounding = 1e-11;      // |x| below it is zero: what Newton leaves of a coordinate that is zero
+constexpr double rounding = 1e-11;   // |x| below that times its unit is zero: what Newton leaves of a coordinate that is zero
 constexpr int most_neutral_points = 4;  // beside a branch point; more are neutral by nature, as without damping
+constexpr double upright = 1e8;      // slope of x against p, in units, above which a start says nothing of the size of x
+constexpr double at_a_stand = 1e-3;  // slope of the parameter, in the metric, below which a state that grows does so without bound
+
+// How a walk leaves a branch point: what lies nearer to it than the first point beside it is not seen.
+struct DepartureLimits {
+  double first = 0.05, first_of_orbit = 0.25;     // first distance tried, in parts of the first step; of orbits multipliers are less exact
+  double shrink = 0.1;                            // the next one, in parts of the one before
+  double nearest = 1e-8;                          // in the metric: nearer, what the branch does is rounding
+  double aside = 0.1;                             // of the distance: largest correction away from the direction
+  double bend = 0.5;                              // of the slope of the parameter at the branch point: largest change of it
+  double upright = 1e-6;                          // smaller slopes are zero: a pitchfork, where the slope doubles with the distance
+  double least_ratio = 1.6, largest_ratio = 2.4;  // of the slopes at the distance and at half of it
+  double visible = 1e-13;                         // error of a slope times the distance: smaller ones are those of an upright line
+};
+constexpr DepartureLimits leaving;
+
+// Size of x where x itself, at rest, does not tell it.
+double unit_at(const Problem& f, In u0, const WalkOptions& o) {
+  if (f.is_flow() || dynamic_cast<const OrbitProblem*>(&f)) return natural_size(f, u0, o.lower, o.upper);
+  return 1.0;  // the unknowns of a defining system are never all at rest
+}
 }  // namespace
 
 void WalkOptions::validate() const {
@@ -72,11 +94,21 @@ struct Walker::State {
   int accepted = 0;
   int unstable = 0;     // directions, of `next`
   int refinements = 0;  // of the step at hand, for the sake of events
+  double unit = 1.0;    // of x
   bool scale_from_slope = false;
+  bool departed = false;       // from a branch point, to a first point beside it
   bool has_signature = false;  // of `now`; not at a branch point, where it is undefined
   bool has_before = false;     // `before` is a point of its own
   StopReason stop = StopReason::none;
   const Observer* observer = nullptr;
+
+  void measure(const WalkOptions& o);
+  void begin_at_branch_point(const Vector& direction, const WalkOptions& o);
+  int unstable_at_branch_point();
+  void leave_branch_point(const WalkOptions& o);
+  bool beside_branch_point(double distance, const WalkOptions& o, Sample& out);
+  bool goes_on_alike(double slope, double distance, const Sample& near, const Sample& far) const;
+  bool is_unbounded() const;
 };
 
 Walker::Walker(const Problem& problem, WalkOptions options) : problem_(problem), options_(std::move(options)) { options_.validate(); }
@@ -84,7 +116,8 @@ Walker::~Walker() = default;
 
 Branch Walker::walk(const Vector& u0, const Observer& observer) {
   const int n = problem_.size();
-  NewtonResult polished = newton(problem_, u0, {.tolerance = 1e-12, .max_iterations = 30});
+  const Vector units = Vector::Constant(n, unit_at(problem_, u0, options_));
+  NewtonResult polished = newton_in_units(problem_, u0, units, {.tolerance = 1e-12, .max_iterations = 30});
   if (!polished.ok())
     throw std::invalid_argument(
         fmt::format("no solution near the start of the branch: Newton {}, residual {:.3g}", to_string(polished.outcome), polished.residual));
@@ -151,35 +184,15 @@ bool Walker::begin(const Vector& u0, const Vector& direction, bool from_branch_p
   for (int r = 0; r < static_cast<int>(problem_.reflections().size()); ++r)
     if (std::find(active.begin(), active.end(), r) == active.end()) s.broken.push_back(r);
   const double range = options_.upper - options_.lower;
-  s.largest_x = u0.head(n).norm();
-  if (s.largest_x < rounding) s.largest_x = 0.0;  // Newton's remainder tells nothing of the size of x
-  s.curve.set_scales(s.largest_x > 0.0 ? s.largest_x : 1.0, range);
-  s.now->u = u0;
+  s.now->u = s.start_u = u0;
+  s.measure(options_);
   if (from_branch_point) {
-    s.now->tangent = direction / s.curve.length(direction);
-    Vector r(n);
-    problem_.residual(u0, r);
-    s.now->residual = r.lpNorm<Eigen::Infinity>();
-    // the critical one is neutral here up to rounding: do not count it
-    int unstable = 0;
-    if (problem_.is_flow()) {
-      Matrix j(n, n + 1);
-      problem_.jacobian(u0, j);
-      Spectrum eigen(s.curve.blocks());
-      if (eigen.compute(j)) s.eigenvalues = eigen.eigenvalues();
-      for (const auto& z : s.eigenvalues) unstable += z.real() > 1e-8 * (1.0 + std::abs(z)) ? 1 : 0;
-    } else if (s.curve.orbit()) {
-      Eigen::VectorXi group(s.eigenvalues.size());
-      if (s.curve.orbit()->multipliers(u0, s.eigenvalues, group))
-        for (const auto& mu : s.eigenvalues) unstable += std::abs(mu) > 1.0 + 1e-8 ? 1 : 0;
-    }
-    s.branch.append(s.now->u, s.now->tangent, 0.0, s.now->residual, 0.0, 0, unstable, &s.eigenvalues);
-    s.branch.start_reason = StopReason::known_branch_point;
+    s.begin_at_branch_point(direction, options_);
   } else {
     const Vector normal = direction;
     if (!s.curve.sample(u0, normal, *s.now)) return false;
     const double slope = s.now->tangent.head(n).norm() / std::abs(s.now->tangent[n]);
-    if (s.largest_x == 0.0 && slope * range > rounding && slope * range < 1e8) {  // starts at rest: the slope, unless upright, tells the size of x
+    if (s.largest_x == 0.0 && slope * range > rounding * s.unit && slope * range < upright * s.unit) {  // at rest: the slope tells the size of x
       s.curve.set_scales(slope * range, range);
       s.scale_from_slope = true;
       s.step = std::max(options_.min_step, 0.05 * options_.initial_step);
@@ -188,12 +201,97 @@ bool Walker::begin(const Vector& u0, const Vector& direction, bool from_branch_p
     s.has_signature = true;
     s.branch.append(s.now->u, s.now->tangent, 0.0, s.now->residual, 0.0, s.now->iterations, s.curve.unstable(s.now->signature),
                     &s.curve.eigenvalues());
+    *s.before = *s.now;
+    s.start_tangent = s.now->tangent;
   }
-  s.unbounded = 1e6 * std::max(1.0, s.curve.x_scale());
-  *s.before = *s.now;
-  s.start_u = s.now->u;
-  s.start_tangent = s.now->tangent;
+  s.unbounded = 1e6 * std::max(s.unit, s.curve.x_scale());
   return true;
+}
+
+// The metric at the start: x in units of its own size, at rest of the problem's.
+void Walker::State::measure(const WalkOptions& o) {
+  unit = unit_at(curve.problem(), start_u, o);
+  largest_x = start_u.head(curve.problem().size()).norm();
+  if (largest_x < rounding * unit) largest_x = 0.0;  // Newton's remainder tells nothing of the size of x
+  curve.set_scales(largest_x > 0.0 ? largest_x : unit, o.upper - o.lower);
+}
+
+void Walker::State::begin_at_branch_point(const Vector& direction, const WalkOptions& o) {
+  Vector r(curve.problem().size());
+  curve.problem().residual(start_u, r);
+  now->residual = r.lpNorm<Eigen::Infinity>();
+  start_tangent = now->tangent = direction / curve.length(direction);
+  const int count = unstable_at_branch_point();
+  branch.append(start_u, start_tangent, 0.0, now->residual, 0.0, 0, count, &eigenvalues);
+  branch.start_reason = StopReason::known_branch_point;
+  *before = *now;
+  leave_branch_point(o);
+}
+
+// The critical one is neutral there up to rounding: it is not counted.
+int Walker::State::unstable_at_branch_point() {
+  const Problem& f = curve.problem();
+  constexpr double neutral = 1e-8, nothing = 1e-10;  // next to its own size, or to that of the largest eigenvalue
+  int count = 0;
+  if (f.is_flow()) {
+    Matrix j(f.size(), f.size() + 1);
+    f.jacobian(start_u, j);
+    Spectrum eigen(curve.blocks());
+    if (eigen.compute(j)) eigenvalues = eigen.eigenvalues();
+    const Eigen::ArrayXd size = eigenvalues.array().abs();
+    const double critical = std::max(size.minCoeff(), nothing * size.maxCoeff());
+    for (const auto& z : eigenvalues) count += z.real() > neutral * std::abs(z) && std::abs(z) > critical ? 1 : 0;
+  } else if (curve.orbit()) {
+    Eigen::VectorXi group(eigenvalues.size());
+    if (curve.orbit()->multipliers(start_u, eigenvalues, group))
+      for (const auto& mu : eigenvalues) count += std::abs(mu) > 1.0 + neutral ? 1 : 0;
+  }
+  return count;
+}
+
+// Where the branch goes on beyond a point beside the branch point as it begins before it, nothing lies between them: from there on steps are searched
+// as everywhere. If it nowhere does, as at a degenerate pitchfork, the first regular point is taken.
+void Walker::State::leave_branch_point(const WalkOptions& o) {
+  const double slope = now->tangent[curve.problem().size()] / curve.p_scale();
+  const double part = curve.orbit() ? leaving.first_of_orbit : leaving.first, finest = leaving.nearest / leaving.shrink;
+  const double first = std::max(finest, part * o.initial_step * std::min(1.0, unit / curve.x_scale()));
+  Sample far, near, best_far, best_near;
+  double best = 0.0;
+  bool alike = false;
+  for (double distance = first; distance > leaving.nearest && !alike; distance *= leaving.shrink) {
+    if (!beside_branch_point(distance, o, far) || !beside_branch_point(0.5 * distance, o, near) || !(far.signature == near.signature)) continue;
+    alike = goes_on_alike(slope, distance, near, far);
+    if (best > 0.0 && !alike) continue;
+    best = distance;
+    best_far = far;
+    best_near = near;
+  }
+  if (best == 0.0) return;
+  *before = std::move(best_near);
+  *now = std::move(best_far);
+  arclength = curve.length(now->u - start_u);
+  step = std::clamp(best / part, o.min_step, o.initial_step);
+  has_signature = departed = true;
+}
+
+// Near the branch point, in its direction, and within the range.
+bool Walker::State::beside_branch_point(double distance, const WalkOptions& o, Sample& out) {
+  const Vector guess = start_u + distance * start_tangent;
+  if (!curve.sample(guess, start_tangent, out) || curve.length(out.u - guess) > leaving.aside * distance) return false;
+  const double p = out.u[curve.problem().size()];
+  return p >= o.lower && p <= o.upper;
+}
+
+bool Walker::State::goes_on_alike(double slope, double distance, const Sample& near, const Sample& far) const {
+  const int n = curve.problem().size();
+  const double half = near.tangent[n] / curve.p_scale(), whole = far.tangent[n] / curve.p_scale(), ratio = whole / half;
+  if (std::abs(slope) > leaving.upright) return std::abs(whole - slope) < leaving.bend * std::abs(slope);
+  return std::abs(whole) * distance < leaving.visible || (ratio > leaving.least_ratio && ratio < leaving.largest_ratio);
+}
+
+// Beyond any size, while the parameter hardly moves any more.
+bool Walker::State::is_unbounded() const {
+  return largest_x > unbounded && std::abs(now->tangent[curve.problem().size()]) < at_a_stand * curve.p_scale();
 }
 
 bool Walker::can_continue() const { return s_->stop == StopReason::none; }
@@ -343,8 +441,8 @@ bool Walker::locate_events() {
     return true;
   }
   // At either end of the walk there is no point beyond that would show a turn.
-  const int first = s.branch.start_reason == StopReason::known_branch_point ? 1 : 0;
-  const bool last = s.stop != StopReason::none || s.accepted == first;
+  const int first = s.branch.start_reason == StopReason::known_branch_point && !s.departed ? 1 : 0;
+  const bool last = s.stop != StopReason::none || (s.accepted == first && !s.departed);
   if (last || !(s.now->signature == s.next->signature) || !(s.before->signature == s.now->signature) ||
       s.finder.turns_at(*s.before, *s.now, *s.next) || s.finder.suspects(*s.before, *s.now, *s.next, last)) {
     auto& found = s.finder.find(*s.before, *s.now, *s.next, last);
@@ -430,7 +528,7 @@ void Walker::find_peak(const Observable& peak) {
   const int n = problem_.size();
   const auto slope = [&](const Sample& at) {
     if (peak.form) return peak.form->gradient(at.u.head(n)).dot(at.tangent.head(n));
-    const double h = 1e-5 * std::min(1.0, s.curve.x_scale());
+    constexpr double h = 1e-5;  // in the metric
     return (peak.value(at.u + h * at.tangent) - peak.value(at.u - h * at.tangent)) / (2.0 * h);
   };
   double f = slope(*s.now), g = slope(*s.next);
@@ -446,7 +544,9 @@ void Walker::find_peak(const Observable& peak) {
     if (!s.curve.between(*s.now, *s.next, sigma, at)) break;
     if (peak.form && problem_.derivatives() >= 2) {  // its own system, from ever nearer
       PeakSystem system(problem_, s.curve.blocks().indices[0], *peak.form, at.u);
-      const NewtonResult r = newton(system, system.unknowns(at.u), {.tolerance = 1e-13, .max_iterations = 12});
+      Vector units = Vector::Constant(system.size(), s.curve.x_scale());
+      units[system.size() - 1] = s.curve.p_scale();
+      const NewtonResult r = newton_in_units(system, system.unknowns(at.u), units, {.tolerance = 1e-13, .max_iterations = 12});
       const bool solved = r.settled();
       const Vector chord = s.next->u - s.now->u;
       Vector u = at.u;
@@ -489,7 +589,7 @@ void Walker::accept() {
   s.has_signature = s.has_signature || s.accepted >= most_neutral_points || !neutral_multiplier(s.curve, *s.now);
   ++s.accepted;
   keep_scale();
-  if (s.stop == StopReason::none && s.largest_x > s.unbounded) s.stop = StopReason::unbounded;
+  if (s.stop == StopReason::none && s.is_unbounded()) s.stop = StopReason::unbounded;
   if (s.stop == StopReason::none && creeps_to_bound()) s.stop = StopReason::parameter_bound;
   if (s.stop == StopReason::none && s.branch.points() == s.branch.capacity()) s.stop = StopReason::max_points;
   if (s.stop == StopReason::none && s.observer && *s.observer && !(*s.observer)(s.branch, s.branch.points() - 1)) s.stop = StopReason::observer;
@@ -513,7 +613,7 @@ void Walker::keep_scale() {
   }
   if (s.scale_from_slope) {
     const double by_chord = std::max(s.largest_x, size * range / moved);
-    if (by_chord < 0.5 * scale && by_chord > rounding) scale = by_chord;
+    if (by_chord < 0.5 * scale && by_chord > rounding * s.unit) scale = by_chord;
     s.scale_from_slope = moved < 0.05 * range;
   }
   if (scale == s.curve.x_scale()) return;

@@ -6,7 +6,9 @@
 #include <numbers>
 
 #include "continuation/deflation.hpp"
+#include "continuation/natural_size.hpp"
 #include "core/kinsol.hpp"
+#include "core/problem_in_units.hpp"
 #include "models/closed_forms.hpp"
 #include "studies/averaged_source.hpp"
 #include "studies/cable_model_keys.hpp"
@@ -151,7 +153,7 @@ class ExpressionSource : public EquilibriumSource {
   std::vector<Start> starts(const Problem& f, const std::string& lens, double lower, double upper) const override {
     std::vector<Start> all;
     const auto look = [&](double p) {
-      for (const auto& u : rest_points(f, p)) all.push_back({u, fmt::format("{} = {:.6g}", lens, p)});
+      for (const auto& u : rest_points(f, p, lower, upper)) all.push_back({u, fmt::format("{} = {:.6g}", lens, p)});
     };
     if (value(lens) >= lower && value(lens) <= upper) look(value(lens));
     look(lower);
@@ -168,13 +170,17 @@ class ExpressionSource : public EquilibriumSource {
   }
 
  private:
-  std::vector<Vector> rest_points(const Problem& f, double p) const {
+  std::vector<Vector> rest_points(const Problem& f, double p, double lower, double upper) const {
     const int n = model_.size();
     Vector guess(n + 1);
     for (int i = 0; i < n; ++i) guess[i] = model_.initial[static_cast<std::size_t>(i)];
     guess[n] = p;
-    NewtonResult first = newton(f, guess);
-    if (!first.ok()) first = line_search_solve(f, guess);
+    Vector units = Vector::Ones(n + 1);
+    units.head(n) = natural_sizes(f, guess, lower, upper);
+    const ProblemInUnits scaled(f, units, row_sizes(f, guess, units));
+    guess = guess.cwiseQuotient(units);
+    NewtonResult first = newton(scaled, guess);
+    if (!first.ok()) first = line_search_solve(scaled, guess);
     const Vector centre = first.ok() ? first.x : guess;
     std::vector<Vector> known, from = {guess};
     if (first.ok()) known.push_back(first.x);
@@ -185,7 +191,9 @@ class ExpressionSource : public EquilibriumSource {
         from.push_back(u);
       }
     }
-    return deflated_solutions(f, known, from);
+    auto found = deflated_solutions(scaled, known, from);
+    for (auto& u : found) u.array() *= units.array();
+    return found;
   }
   Indices indices(const Amplitude& a) const {
     Indices of;
