@@ -62,6 +62,7 @@ Setup setup(const Configuration& c) {
   s.levels.order = static_cast<int>(c.integer("response.order"));
   s.levels.complete_harmonics = static_cast<int>(c.integer("compare.harmonics"));
   s.levels.orbits.seed_grid = static_cast<int>(c.integer("seeds.grid"));
+  s.levels.orbits.check.starts = 0;  // the sweep is the check by integration here
   s.tolerance = c.number("compare.tolerance");
   s.sweep_points = static_cast<int>(c.integer("sweep.points"));
   s.sweep_tolerance = c.number("sweep.tolerance");
@@ -298,6 +299,7 @@ std::vector<Row> map_errors(const Configuration& c, const Setup& s, RunContext& 
                       {"rad/s"}};
     CompareOptions o = s.levels;
     o.orbits.period_doublings = 0;
+    o.orbits.averaged_seeds = false;
     o.orbits.truncation_tolerance = 1e-6;
     RunContext quiet;
     const Levels levels = walk_levels(held, o, closed_forms(c, o.order, s.second, row.second), quiet, false);
