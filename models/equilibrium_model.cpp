@@ -200,7 +200,8 @@ void EquilibriumFlow::check_mirror(const Mirror& mirror, const Vector& signs) co
 
 std::vector<Vector> sample_points(const EquilibriumModel& m, const std::vector<std::string>& lenses, int count) {
   constexpr int tries_each = 50;
-  std::mt19937 random(2);  // the same points every time
+  constexpr double scales[] = {1.0, 3.0, 10.0};  // a field may be linear near the start
+  std::mt19937 random(2);                        // the same points every time
   std::uniform_real_distribution<double> between(-1.0, 1.0);
   const VectorField f = bound(m, m.rhs, lenses);
   std::vector<Vector> all;
@@ -208,7 +209,7 @@ std::vector<Vector> sample_points(const EquilibriumModel& m, const std::vector<s
     std::vector<double> u, r(m.variables.size());
     for (const double x : m.initial) {
       const double part = between(random);
-      u.push_back(std::max(1.0, std::abs(x)) * (i % 2 == 0 ? part : std::abs(part)));
+      u.push_back(scales[i / 2 % 3] * std::max(1.0, std::abs(x)) * (i % 2 == 0 ? part : std::abs(part)));
     }
     for (const auto& name : lenses) {
       const double value = m.parameter(name);

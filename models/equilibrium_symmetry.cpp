@@ -6,6 +6,8 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <numbers>
 
 namespace whirl::models {
 namespace {
@@ -159,6 +161,32 @@ std::vector<Symmetry> continuous_symmetries(const EquilibriumModel& model, const
     if (std::all_of(points.begin() + used, points.end(), [&](const Vector& u) { return defect(flow, u, s) < rounding; })) all.push_back(std::move(s));
   }
   return all;
+}
+
+std::vector<std::string> periodic_variables(const EquilibriumModel& model, const std::vector<std::string>& lenses) {
+  constexpr int points = 12;
+  const VectorField f = bound(model, model.rhs, lenses);
+  const auto samples = sample_points(model, lenses, points);
+  const std::size_t n = model.variables.size();
+  // The largest change of f, against f, when variable i moves by `shift`.
+  const auto change = [&](std::size_t i, double shift) {
+    double most = 0.0;
+    for (const Vector& u : samples) {
+      std::vector<double> at(u.begin(), u.end()), here(n), there(n);
+      f.evaluate<double>(at, here);
+      at[i] += shift;
+      f.evaluate<double>(at, there);
+      for (std::size_t k = 0; k < n; ++k) {
+        const double apart = std::abs(here[k] - there[k]) / (1.0 + std::abs(here[k]));
+        most = std::isfinite(apart) ? std::max(most, apart) : std::numeric_limits<double>::infinity();
+      }
+    }
+    return most;
+  };
+  std::vector<std::string> found;
+  for (std::size_t i = 0; i < n && !samples.empty(); ++i)
+    if (change(i, 1.0) > 1e-3 && change(i, 2.0 * std::numbers::pi) < rounding) found.push_back(model.variables[i]);
+  return found;
 }
 
 std::string describe(const Symmetry& s, const std::vector<std::string>& variables) {

@@ -29,6 +29,9 @@ struct Symmetry {
 /// Generators of all that have this form; none is looked for among more than `largest` variables: their number is its square.
 std::vector<Symmetry> continuous_symmetries(const EquilibriumModel& model, const std::vector<std::string>& lenses, int largest = 12);
 
+/// Variables in which the equations have the period 2 pi.
+std::vector<std::string> periodic_variables(const EquilibriumModel& model, const std::vector<std::string>& lenses);
+
 /// "translation along theta1 + theta2" or "rotation of (x, y)", with what else it moves.
 std::string describe(const Symmetry& symmetry, const std::vector<std::string>& variables);
 

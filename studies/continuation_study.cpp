@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <utility>
+
 #include "continuation/deflation.hpp"
 #include "studies/common_keys.hpp"
 #include "studies/equilibrium_source.hpp"
@@ -97,7 +99,8 @@ bool explore(const Problem& f, const Setup& s, Network& net, const std::vector<d
 }
 
 // The observer has ended a branch of solutions that are not isolated: what changed along it was rounding.
-void end_not_isolated(std::vector<Branch>& branches) {
+void end_not_isolated(std::vector<Branch>& branches, const std::string& first) {
+  std::erase_if(branches, [&](const Branch& b) { return b.stop_reason == StopReason::observer && b.name != first; });
   for (Branch& b : branches)
     for (StopReason* reason : {&b.start_reason, &b.stop_reason})
       if (*reason == StopReason::observer) {
@@ -129,7 +132,9 @@ ExitStatus run(const Configuration& c, RunContext& context) {
     if (i % 50 == 0) context.progress.show(fmt::format("branch at {} = {:.6g}, {} points", s.parameter, b.parameter(i), i));
     return !interrupted;
   });
+  std::string first_loose;  // of the branches that are not isolated one stands for all
   net.on_branch([&](const Branch& b) {
+    if (!left_isolation.empty() && !std::exchange(first_loose, first_loose.empty() ? b.name : first_loose).empty()) return;
     output.write_branch(file, b);
     file.flush();
   });
@@ -137,7 +142,7 @@ ExitStatus run(const Configuration& c, RunContext& context) {
   auto branches = s.source->marked(net.branches(), context);
   if (!left_isolation.empty()) {
     context.warn(left_isolation);
-    end_not_isolated(branches);
+    end_not_isolated(branches, first_loose);
   }
   output.write_special_points(file, branches);
   file.flush();

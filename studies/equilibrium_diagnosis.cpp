@@ -21,7 +21,7 @@ struct Limits {
   double shift = 1e-3;      // along the null vector, against 1 + |x|: where another solution is looked for
   double residual = 1e-12;  // of a solution, against the size of f_x times that of x
   double moved = 1e-6;      // g(x) of a symmetry, against 1 + |x|: it moves the solution
-  double corner = 1e-6;     // what stands in abs(...), against 1: zero
+  double at_corner = 1e-6;  // what stands in abs(...), against 1: zero
   double standing = 1e-8;   // change of the parameter against that of the state: none
   double one_place = 1e-5;  // events nearer than this, against 1 + |u|, are one corner
 };
@@ -142,6 +142,7 @@ std::vector<Branch> with_corners_marked(const EquilibriumModel& model, const std
           return k.subtype == corner && (k.u - s.u).norm() < limits.one_place * (1.0 + s.u.norm());
         });
         if (known) continue;
+        s.type = EventType::gave_up;
         s.subtype = corner;
         ++count;
       }
@@ -149,7 +150,8 @@ std::vector<Branch> with_corners_marked(const EquilibriumModel& model, const std
     }
     b.special = std::move(kept);
     if (count > 0)
-      context.warn(fmt::format("branch {}: {} corners where an abs(...) of the equations is zero: they have no derivative there", b.name, count));
+      context.warn(fmt::format("branch {}: {} where an abs(...) of the equations is zero: they have no derivative there", b.name,
+                               count == 1 ? "a corner" : fmt::format("{} corners", count)));
     for (const auto& [reason, u] : {std::pair{b.start_reason, b.u(0)}, std::pair{b.stop_reason, b.u(b.points() - 1)}})
       if (reason == StopReason::min_step && at_corner(field, u))
         context.warn(

@@ -122,6 +122,9 @@ EquilibriumModel isolated_model_of(const Configuration& c, const std::vector<std
                   e.what());
   }
   for (const auto& sum : models::linear_invariants(model, free)) {
+    // A sum of angles is none of the torus: its value changes with every turn. What it conserves is for `phase`.
+    const auto in_sum = [&](const std::string& angle) { return (" " + sum + " ").find(" " + angle + " ") != std::string::npos; };
+    if (std::any_of(model.angles.begin(), model.angles.end(), in_sum)) continue;
     EquilibriumModel with = model;
     with.conserved.push_back(sum);
     double value = 0.0;
@@ -136,6 +139,9 @@ EquilibriumModel isolated_model_of(const Configuration& c, const std::vector<std
     notes.push_back(
         fmt::format("the equations conserve {0}, so that no rest point is isolated: {0} keeps the value {1:g} that it has at initial", sum, value));
   }
+  if (const auto turning = models::periodic_variables(model, free); !turning.empty() && model.angles.empty())
+    notes.push_back(
+        fmt::format("the equations repeat every 2 pi in {}: equilibrium_model.angles takes each solution once", fmt::join(turning, ", ")));
   return model;
 }
 

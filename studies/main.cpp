@@ -17,10 +17,10 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// The text as one line of at most 480 characters, however long the input's names are: what is too long loses its middle, since place and key stand
+/// The text as one line of at most 440 characters, however long the input's names are: what is too long loses its middle, since place and key stand
 /// first and what is wanted last.
 std::string brief(std::string_view text) {
-  constexpr std::size_t longest = 480, tail = 160;
+  constexpr std::size_t longest = 440, tail = 160;
   std::string s;
   for (const char c : text) {
     const bool space = static_cast<unsigned char>(c) <= 0x20 || c == 0x7f;

@@ -136,6 +136,22 @@ TEST_CASE("translations and rotations are found and described", "[symmetry]") {
   CHECK(described(sirs(), {"b"}).empty());
 }
 
+TEST_CASE("variables that repeat every turn are found", "[symmetry]") {
+  CHECK(periodic_variables(kuramoto(0.1), {"K"}) == std::vector<std::string>{"a", "b", "c"});
+  CHECK(periodic_variables(ring(), {"p"}).empty());
+  const EquilibriumModel pendulum{
+      .variables = {"x", "v"}, .parameters = {{"p", 0.2}}, .rhs = {"v", "p - sin(x)*cos(2*x) - v"}, .initial = {0.2, 0.0}};
+  CHECK(periodic_variables(pendulum, {"p"}) == std::vector<std::string>{"x"});
+}
+
+TEST_CASE("a field that is linear only near the start has no symmetry", "[symmetry]") {
+  const EquilibriumModel chua{.variables = {"x", "y", "z"},
+                              .parameters = {{"m", -0.5}},
+                              .rhs = {"9*(y - x + 0.714*x - 0.5*(m + 0.714)*(abs(x+1) - abs(x-1)))", "x - y + z", "-14*y"},
+                              .initial = {0.0, 0.0, 0.0}};
+  CHECK(continuous_symmetries(chua, {"m"}).empty());
+}
+
 TEST_CASE("a pinned variable reduces the flow to what the symmetry leaves", "[symmetry]") {
   EquilibriumModel start = ring();
   start.initial = {0.0, 0.5};
