@@ -88,9 +88,10 @@ struct Walker::State {
   Eigen::VectorXcd eigenvalues;  // of `next`, kept while events are looked for
   Curve::Report report;
   double step, step_taken = 0.0, arclength = 0.0, largest_x = 0.0;
-  double unbounded = 0.0;  // a state of this size
-  double factor = 1.0;     // by which the next step may change
-  double max_turn;         // between successive tangents of unit length
+  double upright_from = 0.0;  // arclength since which the parameter has stood still
+  double unbounded = 0.0;     // a state of this size
+  double factor = 1.0;        // by which the next step may change
+  double max_turn;            // between successive tangents of unit length
   int accepted = 0;
   int unstable = 0;     // directions, of `next`
   int refinements = 0;  // of the step at hand, for the sake of events
@@ -109,7 +110,22 @@ struct Walker::State {
   bool beside_branch_point(double distance, const WalkOptions& o, Sample& out);
   bool goes_on_alike(double slope, double distance, const Sample& near, const Sample& far) const;
   bool is_unbounded() const;
+  bool stands_upright(const WalkOptions& options);
 };
+
+// Does the state go on while the parameter stays? There r_x is singular all along, and what changes its sign is rounding: no event.
+bool Walker::State::stands_upright(const WalkOptions& options) {
+  constexpr double still = 1e-9;               // scaled slope of the parameter along the curve
+  constexpr double length = 0.05;              // over which it must stand still
+  if (!options.explain_changes) return false;  // a curve of special points may well keep to one value
+  if (std::abs(now->tangent[now->tangent.size() - 1]) > still * curve.p_scale()) {
+    upright_from = arclength;
+    return false;
+  }
+  if (arclength - upright_from < length) return false;
+  std::erase_if(branch.special, [this](const SpecialPoint& e) { return e.arclength > upright_from; });
+  return true;
+}
 
 Walker::Walker(const Problem& problem, WalkOptions options) : problem_(problem), options_(std::move(options)) { options_.validate(); }
 Walker::~Walker() = default;
@@ -591,6 +607,7 @@ void Walker::accept() {
   keep_scale();
   if (s.stop == StopReason::none && s.is_unbounded()) s.stop = StopReason::unbounded;
   if (s.stop == StopReason::none && creeps_to_bound()) s.stop = StopReason::parameter_bound;
+  if (s.stop == StopReason::none && s.stands_upright(options_)) s.stop = StopReason::min_step;  // no step leads off this parameter value
   if (s.stop == StopReason::none && s.branch.points() == s.branch.capacity()) s.stop = StopReason::max_points;
   if (s.stop == StopReason::none && s.observer && *s.observer && !(*s.observer)(s.branch, s.branch.points() - 1)) s.stop = StopReason::observer;
 }

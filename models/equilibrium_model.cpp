@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cmath>
 #include <random>
 
 namespace whirl::models {
@@ -20,8 +21,75 @@ std::ptrdiff_t index_in(const std::vector<std::string>& names, std::string_view 
   return it == names.end() ? -1 : it - names.begin();
 }
 
+// Where the model starts: (initial, free parameters at their own values).
+std::vector<double> start_of(const EquilibriumModel& m, const std::vector<std::string>& lenses) {
+  std::vector<double> u = m.initial;
+  for (const auto& name : lenses) u.push_back(m.parameter(name));
+  return u;
+}
+
+/// f and the conserved c in one field: slopes of all of them along one variable.
+std::vector<double> slopes(const VectorField& all, const std::vector<double>& u, std::size_t variable) {
+  using D = Dual<double, 1>;
+  std::vector<D> in(u.begin(), u.end()), out(static_cast<std::size_t>(all.equations()));
+  in[variable].d[0] = 1.0;
+  all.evaluate<D>(in, out);
+  std::vector<double> slope;
+  for (const D& y : out) slope.push_back(y.d[0]);
+  return slope;
+}
+
+// Each c_k is drawn to its value as fast as the field itself moves at the start: |f_x| (largest row sum), by |grad c_k|^2.
+VectorField hold_conserved(const EquilibriumModel& m, const VectorField& all, const std::vector<std::string>& lenses) {
+  const std::size_t n = m.variables.size(), held = m.conserved.size();
+  const std::vector<double> u = start_of(m, lenses);
+  std::vector<double> now(n + held), squares(held, 0.0), row_sums(n, 0.0);
+  all.evaluate<double>(u, now);
+  for (std::size_t j = 0; j < n; ++j) {
+    const auto slope = slopes(all, u, j);
+    for (std::size_t i = 0; i < n; ++i) row_sums[i] += std::abs(slope[i]);
+    for (std::size_t k = 0; k < held; ++k) squares[k] += slope[n + k] * slope[n + k];
+  }
+  const double fastest = *std::max_element(row_sums.begin(), row_sums.end()), speed = std::isfinite(fastest) && fastest > 0.0 ? fastest : 1.0;
+  std::vector<double> rates;
+  for (std::size_t k = 0; k < held; ++k) {
+    if (!std::isfinite(now[n + k]) || !(squares[k] > 0.0) || !std::isfinite(squares[k]))
+      throw std::invalid_argument(fmt::format("the conserved expression {} is not finite at initial, or no variable moves it there", k + 1));
+    rates.push_back(speed / squares[k]);
+  }
+  return all.held(m.size(), {now.begin() + static_cast<std::ptrdiff_t>(n), now.end()}, rates);
+}
+
+// d/dt c = grad c . f = 0 to rounding, relative to its parts.
+void check_conserved(const EquilibriumModel& m, const std::vector<std::string>& lenses) {
+  constexpr int points = 20;
+  constexpr double rounding = 1e-9;
+  if (m.conserved.empty()) return;
+  std::vector<std::string> texts = m.rhs;
+  texts.insert(texts.end(), m.conserved.begin(), m.conserved.end());
+  const VectorField all = bound(m, texts, lenses);
+  const std::size_t n = m.variables.size();
+  for (const Vector& point : sample_points(m, lenses, points)) {
+    const std::vector<double> u(point.begin(), point.end());
+    std::vector<double> f(texts.size()), sum(m.conserved.size(), 0.0), parts(m.conserved.size(), 0.0);
+    all.evaluate<double>(u, f);
+    for (std::size_t j = 0; j < n; ++j) {
+      const auto slope = slopes(all, u, j);
+      for (std::size_t k = 0; k < sum.size(); ++k) {
+        sum[k] += slope[n + k] * f[j];
+        parts[k] += std::abs(slope[n + k] * f[j]);
+      }
+    }
+    for (std::size_t k = 0; k < sum.size(); ++k)
+      if (std::isfinite(parts[k]) && std::abs(sum[k]) > rounding * parts[k])
+        throw std::invalid_argument(fmt::format("the equations do not conserve expression {}: it changes with time", k + 1));
+  }
+}
+
+}  // namespace
+
 // Text in all names, then everything that is neither variable nor lens fixed at its number.
-VectorField field_of(const EquilibriumModel& m, const std::vector<std::string>& lenses) {
+VectorField bound(const EquilibriumModel& m, const std::vector<std::string>& expressions, const std::vector<std::string>& lenses) {
   m.validate();
   if (lenses.size() > 2) throw std::invalid_argument("at most two free parameters");
   const int n = m.size();
@@ -34,7 +102,16 @@ VectorField field_of(const EquilibriumModel& m, const std::vector<std::string>& 
     if (std::holds_alternative<int>(sources[at])) throw std::invalid_argument(fmt::format("the parameter {} is free twice", lenses[k]));
     sources[at] = n + static_cast<int>(k);
   }
-  return VectorField(m.rhs, inputs_of(m)).rebound(sources, n + static_cast<int>(lenses.size()));
+  return VectorField(expressions, inputs_of(m)).rebound(sources, n + static_cast<int>(lenses.size()));
+}
+
+namespace {
+
+VectorField field_of(const EquilibriumModel& m, const std::vector<std::string>& lenses) {
+  if (m.conserved.empty()) return bound(m, m.rhs, lenses);
+  std::vector<std::string> texts = m.rhs;
+  texts.insert(texts.end(), m.conserved.begin(), m.conserved.end());
+  return hold_conserved(m, bound(m, texts, lenses), lenses);
 }
 
 }  // namespace
@@ -64,6 +141,9 @@ void EquilibriumModel::validate() const {
         throw std::invalid_argument(
             fmt::format("an amplitude of '{}', which is no variable; the variables are {}", name, fmt::join(variables, ", ")));
   }
+  for (const auto& name : angles)
+    if (index_in(variables, name) < 0)
+      throw std::invalid_argument(fmt::format("an angle '{}', which is no variable; the variables are {}", name, fmt::join(variables, ", ")));
   for (const auto& mirror : mirrors) {
     if (mirror.variables.empty()) throw std::invalid_argument("a reflection without variables");
     for (const auto& name : mirror.variables)
@@ -79,6 +159,7 @@ EquilibriumField::EquilibriumField(const EquilibriumModel& model, const std::vec
 EquilibriumFlow::EquilibriumFlow(const EquilibriumModel& m, const std::vector<std::string>& lenses)
     : DualProblem(EquilibriumField(m, lenses), m.size(), static_cast<int>(lenses.size()), true) {
   name_parameters(lenses);
+  check_conserved(m, lenses);
   for (const auto& mirror : m.mirrors) {
     Vector signs = Vector::Ones(size());
     for (const auto& name : mirror.variables) signs[index_in(m.variables, name)] = -1.0;
@@ -115,6 +196,30 @@ void EquilibriumFlow::check_mirror(const Mirror& mirror, const Vector& signs) co
   }
   if (tested == 0)
     throw std::invalid_argument(fmt::format("the sign change of {} could not be tested: f is not finite", fmt::join(mirror.variables, ", ")));
+}
+
+std::vector<Vector> sample_points(const EquilibriumModel& m, const std::vector<std::string>& lenses, int count) {
+  constexpr int tries_each = 50;
+  constexpr double scales[] = {1.0, 3.0, 10.0};  // a field may be linear near the start
+  std::mt19937 random(2);                        // the same points every time
+  std::uniform_real_distribution<double> between(-1.0, 1.0);
+  const VectorField f = bound(m, m.rhs, lenses);
+  std::vector<Vector> all;
+  for (int i = 0; i < count * tries_each && static_cast<int>(all.size()) < count; ++i) {
+    std::vector<double> u, r(m.variables.size());
+    for (const double x : m.initial) {
+      const double part = between(random);
+      u.push_back(scales[i / 2 % 3] * std::max(1.0, std::abs(x)) * (i % 2 == 0 ? part : std::abs(part)));
+    }
+    for (const auto& name : lenses) {
+      const double value = m.parameter(name);
+      u.push_back(value + 0.5 * std::max(1.0, std::abs(value)) * between(random));
+    }
+    f.evaluate<double>(u, r);
+    if (std::all_of(r.begin(), r.end(), [](double x) { return std::isfinite(x); }))
+      all.push_back(Eigen::Map<const Vector>(u.data(), static_cast<Eigen::Index>(u.size())));
+  }
+  return all;
 }
 
 }  // namespace whirl::models

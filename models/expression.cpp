@@ -6,11 +6,11 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <map>
 #include <mutex>
 #include <numbers>
 #include <optional>
-#include <tuple>
+
+#include "models/expression_steps.hpp"
 
 namespace whirl::models {
 
@@ -25,7 +25,6 @@ namespace {
 
 constexpr std::size_t max_length = 20000;  // of one equation; with max_depth it keeps the recursions below far from the end of the stack
 constexpr int max_depth = 200;
-constexpr int max_whole_exponent = 1000000;
 
 struct Function {
   std::string_view name;
@@ -37,45 +36,6 @@ constexpr Function functions[] = {{"exp", Op::exp},   {"log", Op::log},   {"sin"
 const Function* function(std::string_view name) {
   const auto it = std::find_if(std::begin(functions), std::end(functions), [&](const Function& f) { return f.name == name; });
   return it == std::end(functions) ? nullptr : it;
-}
-
-double apply(Op op, double x) {
-  switch (op) {
-    case Op::exp:
-      return std::exp(x);
-    case Op::log:
-      return std::log(x);
-    case Op::sin:
-      return std::sin(x);
-    case Op::cos:
-      return std::cos(x);
-    case Op::tan:
-      return std::tan(x);
-    case Op::sinh:
-      return std::sinh(x);
-    case Op::cosh:
-      return std::cosh(x);
-    case Op::tanh:
-      return std::tanh(x);
-    case Op::atan:
-      return std::atan(x);
-    case Op::sqrt:
-      return std::sqrt(x);
-    case Op::abs:
-      return std::abs(x);
-    case Op::constant:
-    case Op::add:
-    case Op::subtract:
-    case Op::multiply:
-    case Op::divide:
-    case Op::offset:
-    case Op::scale:
-    case Op::over:
-    case Op::whole_power:
-    case Op::real_power:
-      break;
-  }
-  throw std::logic_error("no function of one argument");
 }
 
 // ASCII only, whatever the locale.
@@ -255,78 +215,6 @@ void check_names(const std::vector<std::string>& inputs) {
 }
 
 // --------------------------------------------------------------------------------------------------------------- tree to steps
-
-/// A value while steps are written: a number known already, or a register.
-struct Operand {
-  bool known = true;
-  double number = 0.0;
-  int index = 0;
-};
-Operand fixed(double x) { return {true, x, 0}; }
-
-/// Writes steps: computes what is known at once, and nothing twice.
-class Writer {
- public:
-  explicit Writer(int inputs) : inputs_(inputs) {}
-
-  Operand input(int i) const { return {false, 0.0, i}; }
-  Operand add(const Operand& a, const Operand& b) {
-    if (a.known && b.known) return fixed(a.number + b.number);
-    if (a.known) return add(b, a);
-    if (b.known) return b.number == 0.0 ? a : write({Op::offset, a.index, 0, b.number});
-    return write({Op::add, a.index, b.index});
-  }
-  Operand subtract(const Operand& a, const Operand& b) {
-    if (b.known) return add(a, fixed(-b.number));
-    if (a.known) return add(multiply(b, fixed(-1.0)), a);
-    return write({Op::subtract, a.index, b.index});
-  }
-  Operand multiply(const Operand& a, const Operand& b) {
-    if (a.known && b.known) return fixed(a.number * b.number);
-    if (a.known) return multiply(b, a);
-    if (b.known) return b.number == 1.0 ? a : write({Op::scale, a.index, 0, b.number});
-    return write({Op::multiply, a.index, b.index});
-  }
-  Operand divide(const Operand& a, const Operand& b) {
-    if (a.known && b.known) return fixed(a.number / b.number);
-    if (b.known) return multiply(a, fixed(1.0 / b.number));
-    if (a.known) return write({Op::over, b.index, 0, a.number});
-    return write({Op::divide, a.index, b.index});
-  }
-  Operand raise(const Operand& base, const Operand& exponent) {
-    if (base.known && exponent.known) return fixed(std::pow(base.number, exponent.number));
-    if (exponent.known) return raise(base, exponent.number);
-    if (base.known) return call(Op::exp, multiply(exponent, fixed(std::log(base.number))));
-    return call(Op::exp, multiply(exponent, call(Op::log, base)));
-  }
-  Operand call(Op op, const Operand& a) { return a.known ? fixed(apply(op, a.number)) : write({op, a.index}); }
-
-  /// The register of a result.
-  int result(const Operand& a) { return a.known ? write({Op::constant, 0, 0, a.number}).index : a.index; }
-  std::vector<Step> steps;
-
- private:
-  Operand raise(const Operand& base, double y) {
-    if (y == 0.0) return fixed(1.0);
-    if (y == 1.0) return base;
-    if (y == 2.0) return multiply(base, base);
-    if (y == 3.0) return multiply(multiply(base, base), base);
-    if (y < 0.0) return divide(fixed(1.0), raise(base, -y));
-    if (y == 0.5) return call(Op::sqrt, base);
-    if (y == std::floor(y) && y <= max_whole_exponent) return write({Op::whole_power, base.index, static_cast<int>(y)});
-    return write({Op::real_power, base.index, 0, y});
-  }
-  Operand write(Step s) {
-    if (!std::isfinite(s.number)) throw std::domain_error("is not a finite number");
-    if ((s.op == Op::add || s.op == Op::multiply) && s.a > s.b) std::swap(s.a, s.b);
-    const auto [it, fresh] = known_.try_emplace({s.op, s.a, s.b, s.number}, inputs_ + static_cast<int>(steps.size()));
-    if (fresh) steps.push_back(s);
-    return {false, 0.0, it->second};
-  }
-
-  int inputs_;
-  std::map<std::tuple<Op, int, int, double>, int> known_;
-};
 
 /// GiNaC orders sums and products by addresses in memory, another order in every run, and with it chooses between a - b and -(b - a). Here they are
 /// sorted by their text and signs are drawn out, so that results repeat to the last digit. Last inputs come first: parameters fixed later meet
@@ -508,69 +396,6 @@ VectorField::VectorField(const std::vector<std::string>& equations, const std::v
     }
   }
   steps_ = std::move(writer.steps);
-}
-
-VectorField VectorField::rebound(const std::vector<Source>& sources, int new_inputs) const try {
-  if (sources.size() != static_cast<std::size_t>(inputs_)) throw std::invalid_argument("one source for each input");
-  Writer writer(new_inputs);
-  std::vector<Operand> now;
-  for (const auto& s : sources) now.push_back(std::holds_alternative<int>(s) ? writer.input(std::get<int>(s)) : fixed(std::get<double>(s)));
-  for (const Step& s : steps_) {
-    const Operand a = s.op == Op::constant ? fixed(s.number) : now[static_cast<std::size_t>(s.a)];
-    const auto b = [&] { return now[static_cast<std::size_t>(s.b)]; };
-    switch (s.op) {
-      case Op::constant:
-        now.push_back(a);
-        break;
-      case Op::add:
-        now.push_back(writer.add(a, b()));
-        break;
-      case Op::subtract:
-        now.push_back(writer.subtract(a, b()));
-        break;
-      case Op::multiply:
-        now.push_back(writer.multiply(a, b()));
-        break;
-      case Op::divide:
-        now.push_back(writer.divide(a, b()));
-        break;
-      case Op::offset:
-        now.push_back(writer.add(a, fixed(s.number)));
-        break;
-      case Op::scale:
-        now.push_back(writer.multiply(a, fixed(s.number)));
-        break;
-      case Op::over:
-        now.push_back(writer.divide(fixed(s.number), a));
-        break;
-      case Op::whole_power:
-        now.push_back(writer.raise(a, fixed(s.b)));
-        break;
-      case Op::real_power:
-        now.push_back(writer.raise(a, fixed(s.number)));
-        break;
-      case Op::exp:
-      case Op::log:
-      case Op::sin:
-      case Op::cos:
-      case Op::tan:
-      case Op::sinh:
-      case Op::cosh:
-      case Op::tanh:
-      case Op::atan:
-      case Op::sqrt:
-      case Op::abs:
-        now.push_back(writer.call(s.op, a));
-        break;
-    }
-  }
-  VectorField field;
-  field.inputs_ = new_inputs;
-  for (const int r : results_) field.results_.push_back(writer.result(now[static_cast<std::size_t>(r)]));
-  field.steps_ = std::move(writer.steps);
-  return field;
-} catch (const std::domain_error&) {
-  throw std::invalid_argument("the equations are not finite at these parameters, whatever the variables");
 }
 
 }  // namespace whirl::models

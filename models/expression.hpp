@@ -5,8 +5,9 @@
 ///     f.evaluate<double>(inputs, out);                 // and in Dual or nested Dual: derivatives are exact
 ///
 /// GiNaC reads the text; its tree is turned once into a flat list of steps that runs in any scalar, common parts once.
-/// Accepted: names, decimal numbers, pi, + - * / ^ ( ), exp log sin cos tan sinh cosh tanh atan sqrt abs. `^` is power: repeated
-/// multiplication for a whole exponent, else x^y with x > 0. A number in the text is the nearest double; numbers are combined in double.
+/// Accepted: names, decimal numbers, pi, + - * / ^ ( ), exp log sin cos tan sinh cosh tanh atan sqrt abs. `^` is power (expression_power.hpp): by its
+/// value also where the exponent is a parameter that happens to be whole, one-sided at 0, NaN for other powers of negative numbers. A number in the
+/// text is the nearest double; numbers are combined in double.
 /// A sign behind an operator, and x^y^z, need parentheses: readers disagree about them.
 ///
 /// Throws ExpressionError with the equation and one line of reason.
@@ -19,7 +20,7 @@
 #include <variant>
 #include <vector>
 
-#include "core/dual.hpp"
+#include "models/expression_power.hpp"
 
 namespace whirl::models {
 
@@ -42,6 +43,7 @@ struct Step {
     over,         ///< number / a
     whole_power,  ///< a^b, b the exponent itself
     real_power,   ///< a^number
+    power,        ///< a^b, both registers
     exp,
     log,
     sin,
@@ -72,6 +74,15 @@ class VectorField {
   /// The same equations in other inputs: fixed numbers are computed into the steps. `sources` has one entry for each old input.
   VectorField rebound(const std::vector<Source>& sources, int new_inputs) const;
 
+  /// The last values.size() equations c_k are conserved by the others, f: f - sum_k rate_k grad c_k (c_k - value_k), grad over the first `variables`
+  /// inputs. It has the solutions of f = 0 on which c = value, and on c = value it is f.
+  VectorField held(int variables, const std::vector<double>& values, const std::vector<double>& rates) const;
+
+  /// Where the first value that is not finite comes from: "log(-0.3) is not a real number"; "" if all are finite.
+  std::string not_finite(std::span<const double> x) const;
+  /// What stands in each abs(...): the field has a corner where one of them is zero.
+  std::vector<double> corners(std::span<const double> x) const;
+
   /// Sizes: x inputs(), r equations().
   template <class S>
   void evaluate(std::span<const S> x, std::span<S> r) const {
@@ -82,10 +93,13 @@ class VectorField {
     for (std::size_t i = 0; i < results_.size(); ++i) r[i] = registers[static_cast<std::size_t>(results_[i])];
   }
 
- private:
-  VectorField() = default;
+  /// One step on the registers x.
   template <class S>
   static S run(const Step& step, const S* x);
+
+ private:
+  VectorField() = default;
+  std::vector<bool> used_by(std::size_t first) const;
 
   int inputs_ = 0;
   std::vector<Step> steps_;
@@ -94,17 +108,9 @@ class VectorField {
 
 // ---------------------------------------------------------------------------------------------------------------------------
 
-namespace detail {
-inline double real_power(double x, double y) { return std::pow(x, y); }
-template <class T, int N>
-Dual<T, N> real_power(const Dual<T, N>& x, double y) {
-  return whirl::detail::chain(x, T(real_power(x.v, y)), T(real_power(x.v, y - 1.0) * y));
-}
-}  // namespace detail
-
 template <class S>
 S VectorField::run(const Step& step, const S* x) {
-  using std::abs, std::atan, std::cos, std::cosh, std::exp, std::log, std::sin, std::sinh, std::sqrt, std::tan, std::tanh;
+  using std::abs, std::atan, std::cos, std::cosh, std::exp, std::log, std::sin, std::sinh, std::tan, std::tanh;
   const S& a = x[step.a];
   switch (step.op) {
     case Step::Op::constant:
@@ -127,6 +133,8 @@ S VectorField::run(const Step& step, const S* x) {
       return power(a, step.b);
     case Step::Op::real_power:
       return detail::real_power(a, step.number);
+    case Step::Op::power:
+      return detail::log_power(a, x[step.b], 0);
     case Step::Op::exp:
       return exp(a);
     case Step::Op::log:
@@ -146,7 +154,7 @@ S VectorField::run(const Step& step, const S* x) {
     case Step::Op::atan:
       return atan(a);
     case Step::Op::sqrt:
-      return sqrt(a);
+      return detail::root(a);
     case Step::Op::abs:
       return abs(a);
   }

@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <fstream>
 #include <sstream>
@@ -44,17 +45,24 @@ std::string in_quotes(std::string_view text) {
   return s + '"';
 }
 
-/// One line of at most 80 characters.
-std::string one_line(std::string_view text) {
+bool inside_character(std::string_view s, std::size_t at) { return (static_cast<unsigned char>(s[at]) & 0xc0) == 0x80; }  // of UTF-8
+
+std::string without_breaks(std::string_view text) {
   std::string s;
   for (const char c : text) {
     const bool space = static_cast<unsigned char>(c) <= 0x20 || c == 0x7f;
     if (!space) s += c;
     if (space && !s.empty() && s.back() != ' ') s += ' ';
   }
+  return s;
+}
+
+/// One line of at most 80 characters.
+std::string one_line(std::string_view text) {
+  std::string s = without_breaks(text);
   if (s.size() <= 80) return s;
   std::size_t end = 77;
-  while (end > 0 && (static_cast<unsigned char>(s[end]) & 0xc0) == 0x80) --end;  // not inside a UTF-8 character
+  while (end > 0 && inside_character(s, end)) --end;
   return s.substr(0, end) + "...";
 }
 
@@ -242,27 +250,73 @@ toml::table override_value(std::string_view text, const std::string& shown_overr
   return toml::table{{"value", std::string(text)}};
 }
 
+/// One part of an override's name, "term[2]": a key and what stands in brackets behind it, counted from 1.
+struct PathPart {
+  std::string key;
+  std::vector<std::size_t> indices;
+};
+
+/// Nothing if the part is not of that form.
+std::optional<PathPart> path_part(std::string_view text) {
+  PathPart part{std::string(text.substr(0, text.find('['))), {}};
+  for (text.remove_prefix(part.key.size()); !text.empty();) {
+    std::size_t index = 0;
+    const auto close = text.find(']');
+    if (text.front() != '[' || close == std::string_view::npos) return std::nullopt;
+    const auto [end, error] = std::from_chars(text.data() + 1, text.data() + close, index);
+    if (error != std::errc() || end != text.data() + close || index == 0) return std::nullopt;
+    part.indices.push_back(index - 1);
+    text.remove_prefix(close + 1);
+  }
+  return part.key.empty() ? std::nullopt : std::optional(part);
+}
+
+/// The node that the part names in a section, null if there is none.
+toml::node* find_part(toml::table& section, const PathPart& part, std::size_t indices) {
+  toml::node* node = section.get(part.key);
+  for (std::size_t k = 0; k < indices && node; ++k) {
+    toml::array* array = node->as_array();
+    node = array ? array->get(part.indices[k]) : nullptr;
+  }
+  return node;
+}
+
 void apply_override(toml::table& root, const std::string& text) {
   const std::string shown_override = one_line(text);
+  const auto fail = [&](const std::string& what) { return InputError(fmt::format("--set: {}: {}", shown_override, what)); };
   const auto equals = text.find('=');
   std::string_view name = std::string_view(text).substr(0, equals);
   while (!name.empty() && name.back() == ' ') name.remove_suffix(1);
   const bool well_formed = equals != std::string::npos && !name.empty() && name.front() != '.' && name.back() != '.' &&
                            name.find("..") == std::string_view::npos && std::count(name.begin(), name.end(), '.') < 8;
-  if (!well_formed) throw InputError(fmt::format("--set: {}: must be key=value", shown_override));
+  if (!well_formed) throw fail("must be key=value");
   toml::table given = override_value(std::string_view(text).substr(equals + 1), shown_override);
+  const auto next_part = [&](std::string_view part) {
+    const auto read = path_part(part);
+    if (!read) throw fail(fmt::format("{} is neither a key nor an entry such as term[1]", one_line(part)));
+    return *read;
+  };
   toml::table* section = &root;
   const std::string whole(name);
   for (auto dot = name.find('.'); dot != std::string_view::npos; dot = name.find('.')) {
-    const std::string part(name.substr(0, dot));
+    const PathPart part = next_part(name.substr(0, dot));
+    toml::node* next = find_part(*section, part, part.indices.size());
+    if (!next && part.indices.empty()) next = &section->insert(part.key, toml::table{}).first->second;
+    if (!next) throw fail(fmt::format("there is no {}", one_line(name.substr(0, dot))));
+    if (!next->is_table()) throw fail(fmt::format("{} is not a section", one_line(name.substr(0, dot))));
     name.remove_prefix(dot + 1);
-    toml::node* next = section->get(part);
-    if (!next) next = &section->insert(part, toml::table{}).first->second;
-    if (!next->is_table()) throw InputError(fmt::format("--set: {}: {} is not a section", shown_override, part));
     section = next->as_table();
   }
   // Copied, not moved: a copy has no source line, which marks it as an override.
-  given.get("value")->visit([&](const auto& value) { section->insert_or_assign(name, value); });
+  const PathPart leaf = next_part(name);
+  if (leaf.indices.empty()) {
+    given.get("value")->visit([&](const auto& value) { section->insert_or_assign(leaf.key, value); });
+    return;
+  }
+  toml::node* list = find_part(*section, leaf, leaf.indices.size() - 1);
+  if (!list || !list->as_array() || leaf.indices.back() >= list->as_array()->size()) throw fail(fmt::format("there is no {}", one_line(name)));
+  given.get("value")->visit(
+      [&](const auto& value) { list->as_array()->replace(list->as_array()->cbegin() + static_cast<std::ptrdiff_t>(leaf.indices.back()), value); });
 }
 
 std::string suggestion(const std::string& name) { return name.empty() ? "" : ", did you mean " + name + "?"; }
@@ -502,10 +556,11 @@ class Configuration::Reader {
     const auto table = [](const std::string& key, const toml::node& value) {
       toml::table t;
       value.visit([&](const auto& v) { t.insert(key, v); });
+      if (toml::table* section = t[key].as_table()) section->is_inline(false);  // however it was written
       return t;
     };
     toml::table whole = table(leaf_of(name), node);
-    if (node.is_table()) contents << *node.as_table();
+    if (node.is_table()) contents << *whole[leaf_of(name)].as_table();
     else contents << whole;
     for (std::string section = section_of(name); !section.empty(); section = section_of(section)) whole = table(leaf_of(section), whole);
     document << whole;

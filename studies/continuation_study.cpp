@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <utility>
+
 #include "continuation/deflation.hpp"
 #include "studies/common_keys.hpp"
 #include "studies/equilibrium_source.hpp"
@@ -59,15 +61,20 @@ Setup setup(const Configuration& c) {
 
 std::vector<std::string> check(const Configuration& c) { return setup(c).source->warnings(); }
 
-void explore(const Problem& f, const Setup& s, Network& net, const std::vector<double>& deflate_at, RunContext& context) {
-  for (const Start& start : s.source->starts(f, s.parameter, s.network.walk.lower, s.network.walk.upper)) {
-    (void)net.add_seed(start.u, start.origin);
+// False if no start is isolated.
+bool explore(const Problem& f, const Setup& s, Network& net, const std::vector<double>& deflate_at, RunContext& context) {
+  const auto windows = s.source->angles();
+  std::string not_isolated;
+  const auto seed = [&](const Vector& at, const std::string& origin) {
+    const Vector u = within_windows(at, windows);
+    const std::string why = s.source->not_isolated(f, u);
+    if (not_isolated.empty() && !why.empty()) context.warn(not_isolated = fmt::format("{}: {}", origin, why));
+    if (!why.empty()) return;
+    try_seed(net, u, origin, context);
     net.switch_branches();
-  }
-  for (std::size_t i = 0; i < s.seeds.size(); ++i) {
-    (void)net.add_seed(Eigen::Map<const Vector>(s.seeds[i].data(), f.size() + 1), fmt::format("seed {}", i + 1));
-    net.switch_branches();
-  }
+  };
+  for (const Start& start : s.source->starts(f, s.parameter, s.network.walk.lower, s.network.walk.upper)) seed(start.u, start.origin);
+  for (std::size_t i = 0; i < s.seeds.size(); ++i) seed(Eigen::Map<const Vector>(s.seeds[i].data(), f.size() + 1), fmt::format("seed {}", i + 1));
   for (const double p : deflate_at) {
     std::vector<Vector> known;
     for (const auto& [branch, u] : net.solutions_at(p)) known.push_back(u);
@@ -84,12 +91,22 @@ void explore(const Problem& f, const Setup& s, Network& net, const std::vector<d
         starts.back()[f.size()] = p;
       }
     const auto all = deflated_solutions(f, known, starts);
-    for (std::size_t i = known.size(); i < all.size(); ++i) {
-      (void)net.add_seed(all[i], fmt::format("deflation at {} = {:.6g}", s.parameter, p));
-      net.switch_branches();
-    }
+    for (std::size_t i = known.size(); i < all.size(); ++i) seed(all[i], fmt::format("deflation at {} = {:.6g}", s.parameter, p));
   }
-  if (net.branches().empty()) context.warn("no rest point was found in the range");
+  follow_angles(net, *s.source, context);
+  if (net.branches().empty() && not_isolated.empty()) context.warn("no rest point was found in the range");
+  return not_isolated.empty() || !net.branches().empty();
+}
+
+// The observer has ended a branch of solutions that are not isolated: what changed along it was rounding.
+void end_not_isolated(std::vector<Branch>& branches, const std::string& first) {
+  std::erase_if(branches, [&](const Branch& b) { return b.stop_reason == StopReason::observer && b.name != first; });
+  for (Branch& b : branches)
+    for (StopReason* reason : {&b.start_reason, &b.stop_reason})
+      if (*reason == StopReason::observer) {
+        *reason = StopReason::min_step;
+        b.special.clear();
+      }
 }
 
 ExitStatus run(const Configuration& c, RunContext& context) {
@@ -103,26 +120,40 @@ ExitStatus run(const Configuration& c, RunContext& context) {
   ResultFile file(context.output);
   write_study(file, c);
   s.source->write(file);
-  Network net(*f, s.network);
+  NetworkOptions options = s.network;
+  for (const auto& window : s.source->angles()) options.walk.bounds.push_back(window);
+  Network net(*f, options);
   net.set_namer(s.source->namer());
+  std::string left_isolation;
   net.set_observer([&](const Branch& b, int i) {
+    constexpr int between_looks = 20;
+    if (s.source->may_leave_isolation() && i % between_looks == 2) left_isolation = s.source->not_isolated(*f, b.u(i));
+    if (!left_isolation.empty()) return false;
     if (i % 50 == 0) context.progress.show(fmt::format("branch at {} = {:.6g}, {} points", s.parameter, b.parameter(i), i));
     return !interrupted;
   });
+  std::string first_loose;  // of the branches that are not isolated one stands for all
   net.on_branch([&](const Branch& b) {
+    if (!left_isolation.empty() && !std::exchange(first_loose, first_loose.empty() ? b.name : first_loose).empty()) return;
     output.write_branch(file, b);
     file.flush();
   });
-  explore(*f, s, net, c.numbers("continuation.deflate_at"), context);
-  const auto branches = s.source->marked(net.branches(), context);
+  const bool isolated = explore(*f, s, net, c.numbers("continuation.deflate_at"), context);
+  auto branches = s.source->marked(net.branches(), context);
+  if (!left_isolation.empty()) {
+    context.warn(left_isolation);
+    end_not_isolated(branches, first_loose);
+  }
   output.write_special_points(file, branches);
   file.flush();
   if (const auto left = net.not_followed(); !left.empty() && !net.stopped() && s.network.depth > 0)
     context.warn(fmt::format("branches at {} are not followed: continuation.depth is {}", fmt::join(left, ", "), s.network.depth));
-  for (const auto& note : net.notes()) context.warn(note);
+  for (const auto& note : net.notes())
+    if (std::find(context.warnings.begin(), context.warnings.end(), note) == context.warnings.end()) context.warn(note);
   context.progress.clear();
   if (context.json) fmt::print("{}", output.json(branches));
   if (!context.quiet) fmt::print(stderr, "{}", output.text(branches));
+  if (!isolated) return finish(file, context, ExitStatus::numerical_failure, {context.warnings.back()});
   return finish(file, context, branches);
 }
 

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "models/equilibrium_symmetry.hpp"
 #include "studies/branch_output.hpp"
 #include "studies/section_reader.hpp"
 
@@ -22,7 +23,10 @@ rhs = ["sigma*(y - x)", "x*(rho - z) - y", "x*y - beta*z"]
 initial = [0.0, 0.0, 0.0]         # near a rest point at the lower end of continuation.range
 mirrors = [["x", "y"]]            # optional: variables that change sign together without changing the equations
 amplitudes = { R = ["x", "y"] }   # optional: roots of sums of squares, as further columns
-mirror_subtype = "PF"             # name of branch points that break such a symmetry)toml",
+mirror_subtype = "PF"             # name of branch points that break such a symmetry
+# conserved = ["x + y"]           # optional: expressions that the equations conserve, held at their values at initial; sums are found by themselves
+# phase = "x"                     # optional: a variable that a translation or rotation of all leaves free, held at its value in initial
+# angles = ["x"]                  # optional: variables whose values 2 pi apart are one)toml",
           .required = required};
 }
 
@@ -38,6 +42,9 @@ EquilibriumModel equilibrium_model_of(const Configuration& c) {
     for (auto& names : m.text_rows("mirrors")) model.mirrors.push_back({std::move(names), subtype});
   if (m.has("amplitudes"))
     for (auto& [name, variables] : m.named_texts("amplitudes")) model.amplitudes.push_back({name, std::move(variables)});
+  if (m.has("conserved")) model.conserved = m.texts("conserved");
+  if (m.has("angles")) model.angles = m.texts("angles");
+  (void)m.has("phase");  // read with the model to be continued, see isolated_model_of
   m.no_others();
   const std::size_t n = model.variables.size();
   if (n == 0) throw m.error("variables", "must be an array of at least 1 name");
@@ -59,21 +66,82 @@ EquilibriumModel equilibrium_model_of(const Configuration& c) {
     model.validate();
   } catch (const std::invalid_argument& e) {
     const std::string_view what = e.what();
-    throw m.error(what.find("amplitude") != what.npos ? "amplitudes" : what.find("reflection") != what.npos ? "mirrors" : "variables", e.what());
+    const char* key = what.starts_with("an angle")           ? "angles"
+                      : what.find("amplitude") != what.npos  ? "amplitudes"
+                      : what.find("reflection") != what.npos ? "mirrors"
+                                                             : "variables";
+    throw m.error(key, e.what());
   }
   try {
-    const models::EquilibriumFlow tried(model, {});
-    Vector r(static_cast<Eigen::Index>(n));
-    tried.residual(Eigen::Map<const Vector>(model.initial.data(), r.size()), r);
-    if (!r.allFinite()) throw m.error("initial", "must be a point where every expression of rhs is finite");
+    const models::VectorField tried = models::bound(model, model.rhs, {});
+    if (const std::string why = tried.not_finite(model.initial); !why.empty())
+      throw m.error("initial", fmt::format("must be a point where every expression of rhs is finite: {}", why));
   } catch (const models::ExpressionError& e) {
     const bool of_parameter =
         std::any_of(names.begin(), names.end(), [&](const std::string& p) { return e.reason.find("'" + p + "'") != e.reason.npos; });
     if (e.equation == 0) throw m.error(of_parameter ? "parameters" : "variables", e.reason);
     throw m.error("rhs", fmt::format("expression {}: {}", e.equation, e.reason));
   } catch (const std::invalid_argument& e) {
-    throw m.error(model.mirrors.empty() ? "variables" : "mirrors", e.what());
+    throw m.error("parameters", e.what());
   }
+  if (!model.mirrors.empty()) try {
+      EquilibriumModel mirrored = model;
+      mirrored.conserved.clear();
+      (void)models::EquilibriumFlow(mirrored, {});
+    } catch (const std::invalid_argument& e) {
+      throw m.error("mirrors", e.what());
+    }
+  if (!model.conserved.empty()) try {
+      (void)models::bound(model, model.conserved, {});
+    } catch (const models::ExpressionError& e) {
+      throw m.error("conserved", fmt::format("expression {}: {}", e.equation, e.reason));
+    } catch (const std::invalid_argument& e) {
+      throw m.error("conserved", e.what());
+    }
+  return model;
+}
+
+EquilibriumModel isolated_model_of(const Configuration& c, const std::vector<std::string>& lenses, std::vector<std::string>& notes) {
+  const SectionReader m(c, "equilibrium_model");
+  EquilibriumModel model = equilibrium_model_of(c);
+  const auto known = model.parameter_names();
+  std::vector<std::string> free;  // names that are none are refused elsewhere
+  for (const auto& lens : lenses)
+    if (std::find(known.begin(), known.end(), lens) != known.end() && std::find(free.begin(), free.end(), lens) == free.end()) free.push_back(lens);
+  if (m.has("phase")) try {
+      for (const auto& name : m.text_or_texts("phase")) model = models::pinned(model, name, free);
+    } catch (const std::invalid_argument& e) {
+      throw m.error("phase", e.what());
+    }
+  try {
+    (void)models::EquilibriumFlow(model, free);
+  } catch (const std::invalid_argument& e) {
+    throw m.error(std::string_view(e.what()).find("conserve") != std::string_view::npos ? "conserved"
+                  : m.has("phase")                                                      ? "phase"
+                                                                                        : "mirrors",
+                  e.what());
+  }
+  for (const auto& sum : models::linear_invariants(model, free)) {
+    // A sum of angles is none of the torus: its value changes with every turn. What it conserves is for `phase`.
+    const auto in_sum = [&](const std::string& angle) { return (" " + sum + " ").find(" " + angle + " ") != std::string::npos; };
+    if (std::any_of(model.angles.begin(), model.angles.end(), in_sum)) continue;
+    EquilibriumModel with = model;
+    with.conserved.push_back(sum);
+    double value = 0.0;
+    models::bound(with, {sum}, {}).evaluate<double>(with.initial, std::span<double>(&value, 1));
+    try {
+      (void)models::EquilibriumFlow(with, free);
+    } catch (const std::invalid_argument&) {  // a mirror that the total does not have, say
+      notes.push_back(fmt::format("the equations conserve {}: no rest point is isolated; remove mirrors that change its value, {:g}", sum, value));
+      continue;
+    }
+    model = std::move(with);
+    notes.push_back(
+        fmt::format("the equations conserve {0}, so that no rest point is isolated: {0} keeps the value {1:g} that it has at initial", sum, value));
+  }
+  if (const auto turning = models::periodic_variables(model, free); !turning.empty() && model.angles.empty())
+    notes.push_back(
+        fmt::format("the equations repeat every 2 pi in {}: equilibrium_model.angles takes each solution once", fmt::join(turning, ", ")));
   return model;
 }
 

@@ -13,6 +13,7 @@
 #include "studies/averaged_source.hpp"
 #include "studies/cable_model_keys.hpp"
 #include "studies/common_keys.hpp"
+#include "studies/equilibrium_diagnosis.hpp"
 #include "studies/equilibrium_model_input.hpp"
 #include "studies/slow_flow_ansatz.hpp"
 
@@ -111,19 +112,20 @@ class StaySource : public EquilibriumSource {
 /// Rest points of a system given as text.
 class ExpressionSource : public EquilibriumSource {
  public:
-  explicit ExpressionSource(const Configuration& c) : c_(c), model_(equilibrium_model_of(c)) {}
+  explicit ExpressionSource(const Configuration& c)
+      : c_(c), model_(isolated_model_of(c, lenses_of(c), notes_)), symmetries_(continuous_symmetries(model_, free_of(c, model_))) {}
 
   std::unique_ptr<Problem> problem(const std::vector<std::string>& lenses) const override {
     return std::make_unique<EquilibriumFlow>(model_, lenses);
   }
   double value(const std::string& lens) const override { return model_.parameter(lens); }
   std::string unit(const std::string&) const override { return "-"; }
-  std::vector<std::string> warnings() const override { return {}; }
+  std::vector<std::string> warnings() const override { return notes_; }
   void check_lens(const std::string& key, const std::string& lens, const std::string&, double, double) const override {
     check_equilibrium_lens(c_, model_, key, lens);
   }
 
-  std::vector<PointColumn> columns(const Problem&) const override {
+  std::vector<PointColumn> columns(const Problem& f) const override {
     std::vector<PointColumn> all;
     for (const auto& a : model_.amplitudes)
       all.push_back({a.name, "-", "root of the sum of squares of " + fmt::format("{}", fmt::join(a.variables, ", ")),
@@ -135,6 +137,15 @@ class ExpressionSource : public EquilibriumSource {
                      true});
     for (int i = 0; i < model_.size(); ++i)
       all.push_back({model_.variables[static_cast<std::size_t>(i)], "-", "variable", [i](In u) { return u[i]; }, true});
+    for (const auto& pin : model_.pinned) {
+      const VectorField drift = bound(model_, {pin.drift}, f.parameter_names());
+      all.push_back({pin.name, "-", "variable, pinned", [value = model_.parameter(pin.name)](In) { return value; }});
+      all.push_back({pin.name + "_drift", "-", "speed along the symmetry that the pinned variable would have", [drift](In u) {
+                       double speed = 0.0;
+                       drift.evaluate<double>(std::span<const double>(u.data(), static_cast<std::size_t>(u.size())), std::span<double>(&speed, 1));
+                       return speed;
+                     }});
+    }
     return all;
   }
   std::vector<Observable> observables() const override {
@@ -146,6 +157,24 @@ class ExpressionSource : public EquilibriumSource {
   }
   Network::Namer namer() const override {
     return [](const Branch&) { return "B"; };
+  }
+
+  // Half a turn about the start both ways, a little off so that neither 0 nor half a turn stands on its edge.
+  std::vector<CoordinateBound> angles() const override {
+    constexpr double off_centre = 0.37, overlap = 1e-4;
+    std::vector<CoordinateBound> windows;
+    for (const auto& name : model_.angles) {
+      const auto i = std::find(model_.variables.begin(), model_.variables.end(), name) - model_.variables.begin();
+      const double centre = model_.initial[static_cast<std::size_t>(i)] + off_centre;
+      windows.push_back({static_cast<int>(i), centre - std::numbers::pi, centre + std::numbers::pi + overlap});
+    }
+    return windows;
+  }
+
+  std::string not_isolated(const Problem& f, In u) const override { return why_not_isolated(f, u, model_.variables, symmetries_); }
+  bool may_leave_isolation() const override { return !symmetries_.empty(); }
+  std::vector<Branch> marked(const std::vector<Branch>& branches, RunContext& context) const override {
+    return with_corners_marked(model_, c_.text("continuation.parameter"), branches, context);
   }
 
   // `initial` at the parameter's own value if that lies in the range, at the lower end and the upper, and only if there is no rest point at any of
@@ -170,6 +199,19 @@ class ExpressionSource : public EquilibriumSource {
   }
 
  private:
+  static std::vector<std::string> free_of(const Configuration& c, const EquilibriumModel& model) {
+    std::vector<std::string> names = lenses_of(c);
+    const auto known = model.parameter_names();
+    std::erase_if(names, [&](const std::string& name) { return std::find(known.begin(), known.end(), name) == known.end(); });
+    if (names.size() == 2 && names[0] == names[1]) names.pop_back();
+    return names;
+  }
+  static std::vector<std::string> lenses_of(const Configuration& c) {
+    std::vector<std::string> names;
+    for (const char* key : {"continuation.parameter", "second.parameter"})
+      if (c.schema().find(key)) names.push_back(c.text(key));
+    return names;
+  }
   std::vector<Vector> rest_points(const Problem& f, double p, double lower, double upper) const {
     const int n = model_.size();
     Vector guess(n + 1);
@@ -203,7 +245,9 @@ class ExpressionSource : public EquilibriumSource {
   }
 
   Configuration c_;
+  std::vector<std::string> notes_;
   EquilibriumModel model_;
+  std::vector<Symmetry> symmetries_;
 };
 
 }  // namespace
@@ -243,6 +287,33 @@ std::vector<Observable> peaks_of(const Configuration& c, const EquilibriumSource
     wanted.push_back(known[static_cast<std::size_t>(it - names.begin())]);
   }
   return wanted;
+}
+
+Vector within_windows(Vector u, const std::vector<CoordinateBound>& windows) {
+  constexpr double turn = 2.0 * std::numbers::pi;
+  for (const auto& w : windows)
+    if (u[w.index] < w.lower || u[w.index] > w.upper) u[w.index] -= turn * std::floor((u[w.index] - w.lower) / turn);
+  return u;
+}
+
+void follow_angles(Network& net, const EquilibriumSource& source, RunContext& context) {
+  const auto windows = source.angles();
+  if (windows.empty()) return;
+  for (std::size_t b = 0; b < net.branches().size(); ++b) {
+    std::vector<Vector> beyond;  // by value: branches come to be while they are followed
+    const Branch& branch = net.branches()[b];
+    for (const int i : {0, branch.points() - 1})
+      for (const auto& w : windows)
+        if (branch.points() > 0 && (branch.u(i)[w.index] == w.lower || branch.u(i)[w.index] == w.upper)) {
+          beyond.push_back(branch.u(i));
+          beyond.back()[w.index] += (branch.u(i)[w.index] == w.lower ? 2.0 : -2.0) * std::numbers::pi;
+        }
+    const std::string origin = branch.name + " a turn on";
+    for (const Vector& u : beyond) {
+      try_seed(net, u, origin, context);
+      net.switch_branches();
+    }
+  }
 }
 
 void try_seed(Network& net, const Vector& u, const std::string& origin, RunContext& context) {

@@ -41,6 +41,12 @@ class EquilibriumSource {
   /// Points near solutions, in the order in which they are to be tried; f has one free parameter.
   virtual std::vector<Start> starts(const Problem& f, const std::string& lens, double lower, double upper) const = 0;
   virtual void write(ResultFile& file) const = 0;
+  /// Coordinates of which values a period apart are one, with the window of one period that walks keep to.
+  virtual std::vector<continuation::CoordinateBound> angles() const { return {}; }
+  /// Why the solution u of f is not isolated, one line with what to do about it; "" if it is, or if the source cannot tell.
+  virtual std::string not_isolated(const Problem&, In) const { return ""; }
+  /// Can a branch that begins with isolated solutions lead to others that are not?
+  virtual bool may_leave_isolation() const { return false; }
   /// The branches as they are to be told: special points that the source does not stand for are marked, and that is warned of.
   virtual std::vector<continuation::Branch> marked(const std::vector<continuation::Branch>& branches, RunContext&) const { return branches; }
 };
@@ -53,7 +59,11 @@ std::unique_ptr<EquilibriumSource> equilibrium_source(const Configuration& c);
 void check_parameter_given(const Configuration& c, const std::string& key);
 /// The observables that continuation.peaks names.
 std::vector<continuation::Observable> peaks_of(const Configuration& c, const EquilibriumSource& source);
-/// A start that leads nowhere is told, not fatal.
+/// A start that leads nowhere is told, not fatal. Angles are brought into their windows.
 void try_seed(continuation::Network& net, const Vector& u, const std::string& origin, RunContext& context);
+/// Goes on at the other end of an angle's window where a branch has left it.
+void follow_angles(continuation::Network& net, const EquilibriumSource& source, RunContext& context);
+/// u with each angle within its window.
+Vector within_windows(Vector u, const std::vector<continuation::CoordinateBound>& windows);
 
 }  // namespace whirl::studies

@@ -30,10 +30,13 @@ Schema schema() {
   add_guy_keys(s);
   s.add({.name = "curve.range",
          .unit = "m",
-         .description = "displacements of the mast's end away from the anchor",
-         .default_value = std::vector<double>{-1.0, 1.0},
+         .description = "displacements of the mast's end away from the anchor; left out: 1/500 of the chord rounded, less where the guy is too taut",
+         .default_value = std::vector<double>{},
+         .optional = true,
+         .suggested = true,
          .min_items = 2,
-         .max_items = 2});
+         .max_items = 2,
+         .example = Value{std::vector<double>{-1.0, 1.0}}});
   s.add_count("curve.points", "of the curve", 161, 2, 100000);
   s.add_count("group.guys", "equal guys, equally spread, that hold one point of the mast; 0: none", 0, 0, 100);
   s.add({.name = "group.azimuths_deg",
@@ -49,15 +52,18 @@ Schema schema() {
          .max_items = 36});
   s.add({.name = "group.range",
          .unit = "m",
-         .description = "displacements of the point",
-         .default_value = std::vector<double>{-1.0, 1.0},
+         .description = "displacements of the point; left out: as curve.range",
+         .default_value = std::vector<double>{},
+         .optional = true,
+         .suggested = true,
          .min_items = 2,
-         .max_items = 2});
+         .max_items = 2,
+         .example = Value{std::vector<double>{-1.0, 1.0}}});
   s.add_count("group.points", "of a curve", 81, 2, 100000);
   s.add_count("lumped.masses", "masses of the chains; 0: none", 5, 0, 10000);
   s.add({.name = "lumped.extra_weights",
          .unit = "N",
-         .description = "hung on the masses of the hung chain, from the anchor up",
+         .description = "hung on the masses of the hung chain, from the anchor up: one value for each, or none",
          .default_value = std::vector<double>{},
          .lower = 0.0,
          .closed_lower = true});
@@ -76,27 +82,64 @@ Group group_of(const Setup& s) {
   return group;
 }
 
+// The largest of 1, 2, 5 times a power of ten within x.
+double rounded_down(double x) {
+  const double decade = std::pow(10.0, std::floor(std::log10(x) + 1e-12));
+  return decade * (x >= 5.0 * decade ? 5.0 : x >= 2.0 * decade ? 2.0 : 1.0);
+}
+
+// -d and d: a movement that suits the guy's size, halved until `takes` it both ways.
+template <class Takes>
+std::vector<double> suitable_range(const Guy& guy, Takes&& takes) {
+  constexpr double part_of_chord = 1.0 / 500.0;
+  constexpr int halvings = 40;
+  double d = rounded_down(part_of_chord * guy.chord());
+  for (int i = 0; i < halvings; ++i, d = rounded_down(0.5 * d)) try {
+      takes(-d), takes(d);
+      break;
+    } catch (const std::exception&) {
+    }
+  return {-d, d};
+}
+
+void require_reaction(const Setup& s, double displacement) {
+  for (const double direction : s.directions)
+    for (const auto terms : {GroupTerms::axial, GroupTerms::full_geometry}) (void)reaction(group_of(s), displacement, direction * degree, terms);
+}
+
+// The section's range and points; `otherwise` where no range is given.
+template <class Otherwise>
+std::vector<double> grid(const Configuration& c, const std::string& section, Otherwise&& otherwise) {
+  const int points = static_cast<int>(c.integer(section + ".points"));
+  if (c.has(section + ".range")) return grid_of(c, section + ".range", points);
+  const std::vector<double> range = otherwise();
+  std::vector<double> all;
+  for (int i = 0; i < points; ++i) all.push_back(range[0] + (range[1] - range[0]) * i / (points - 1));
+  return all;
+}
+
 Setup setup(const Configuration& c) {
   Setup s;
   s.guy = guy_of(c);
-  s.curve = grid_of(c, "curve.range", static_cast<int>(c.integer("curve.points")));
+  const auto try_move = [&](double d) { (void)moved(s.guy.exact, d), (void)moved(s.guy.first_order, d); };
+  s.curve = grid(c, "curve", [&] { return suitable_range(s.guy.rest.guy, try_move); });
   s.azimuths = c.numbers("group.azimuths_deg");
-  for (const double end : c.numbers("curve.range"))
-    blame(c, "curve.range", [&] { (void)moved(s.guy.exact, end), (void)moved(s.guy.first_order, end); });
+  for (const double end : {s.curve.front(), s.curve.back()}) blame(c, "curve.range", [&] { try_move(end); });
   const auto guys = c.integer("group.guys");
   if (guys > 0 && !s.azimuths.empty()) throw c.error("group.guys", "is given beside group.azimuths_deg: give one of them");
   for (int j = 0; j < guys; ++j) s.azimuths.push_back(360.0 * j / static_cast<double>(guys));
   s.directions = c.numbers("group.directions_deg");
-  s.displacements = grid_of(c, "group.range", static_cast<int>(c.integer("group.points")));
+  s.displacements = grid(c, "group", [&] {
+    return suitable_range(s.guy.rest.guy, [&](double d) {
+      try_move(d);
+      if (!s.azimuths.empty()) require_reaction(s, d);
+    });
+  });
   if (!s.azimuths.empty())
-    for (const double t : s.directions)
-      for (const double d : c.numbers("group.range"))
-        blame(c, "group.range", [&] {
-          for (const auto terms : {GroupTerms::axial, GroupTerms::full_geometry}) (void)reaction(group_of(s), d, t * degree, terms);
-        });
+    for (const double end : {s.displacements.front(), s.displacements.back()}) blame(c, "group.range", [&] { require_reaction(s, end); });
   s.masses = static_cast<int>(c.integer("lumped.masses"));
-  if (const auto n = c.numbers("lumped.extra_weights").size(); n > static_cast<std::size_t>(s.masses))
-    throw c.error("lumped.extra_weights", fmt::format("must hold at most as many values as lumped.masses, {}", s.masses));
+  if (const auto n = c.numbers("lumped.extra_weights").size(); n > 0 && n != static_cast<std::size_t>(s.masses))
+    throw c.error("lumped.extra_weights", fmt::format("must hold one value for each of lumped.masses, {}, or none", s.masses));
   return s;
 }
 

@@ -21,6 +21,23 @@ namespace fs = std::filesystem;
 
 namespace {
 
+/// The text as one line of at most 440 characters, however long the input's names are: what is too long loses its middle, since place and key stand
+/// first and what is wanted last.
+std::string brief(std::string_view text) {
+  constexpr std::size_t longest = 440, tail = 160;
+  std::string s;
+  for (const char c : text) {
+    const bool space = static_cast<unsigned char>(c) <= 0x20 || c == 0x7f;
+    if (!space || (!s.empty() && s.back() != ' ')) s += space ? ' ' : c;
+  }
+  if (s.size() <= longest) return s;
+  const auto inside_character = [&](std::size_t at) { return (static_cast<unsigned char>(s[at]) & 0xc0) == 0x80; };  // of UTF-8
+  std::size_t end = longest - tail - 5, from = s.size() - tail;
+  while (end > 0 && inside_character(end)) --end;
+  while (from < s.size() && inside_character(from)) ++from;
+  return s.substr(0, end) + " ... " + s.substr(from);
+}
+
 Configuration read(const std::string& file, const std::vector<std::string>& overrides) {
   return Configuration::from_file(file, schemas(), overrides);
 }
@@ -75,7 +92,7 @@ int main(int argc, char** argv) {
   CLI::App app{"Whirl: nonlinear response of cables by continuation, averaging and time integration"};
   app.set_version_flag("--version", version_text());
   app.require_subcommand(1);
-  app.failure_message([](const CLI::App*, const CLI::Error& e) { return fmt::format("error: {}; see whirl --help\n", e.what()); });
+  app.failure_message([](const CLI::App*, const CLI::Error& e) { return fmt::format("error: {}; see whirl --help\n", brief(e.what())); });
   std::string file, output, kind;
   std::vector<std::string> overrides;
   bool json = false, quiet = false;
@@ -113,10 +130,10 @@ int main(int argc, char** argv) {
   } catch (const CLI::ParseError& e) {
     if (app.exit(e) != 0) status = ExitStatus::bad_input;
   } catch (const InputError& e) {
-    fmt::print(stderr, "error: {}\n", e.what());
+    fmt::print(stderr, "error: {}\n", brief(e.what()));
     status = ExitStatus::bad_input;
   } catch (const std::exception& e) {
-    fmt::print(stderr, "error: {}\n", e.what());
+    fmt::print(stderr, "error: {}\n", brief(e.what()));
     status = ExitStatus::numerical_failure;
   }
   if (const auto lost = lost_output(); lost && status == ExitStatus::ok) {

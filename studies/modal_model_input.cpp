@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <numeric>
 
 #include "studies/section_reader.hpp"
@@ -57,6 +58,22 @@ ModalModel::Term term_of(const SectionReader& t, int n) {
   return term;
 }
 
+// A key that is the name of terms and forces is their number: what `--set modal_model.NAME=...` writes.
+void read_named_numbers(const SectionReader& m, ModalModel& model) {
+  for (const std::string& key : m.others()) {
+    std::vector<double*> named;
+    for (auto& t : model.terms)
+      if (t.name == key) named.push_back(&t.coefficient);
+    for (auto& f : model.forces)
+      if (f.name == key) named.push_back(&f.amplitude);
+    if (named.empty()) continue;
+    const double value = m.number(key);
+    if (!std::all_of(named.begin(), named.end(), [&](const double* x) { return *x == *named.front(); }))
+      throw m.error(key, "stands for numbers that differ: set them one by one, such as term[1].coefficient");
+    for (double* x : named) *x = value;
+  }
+}
+
 ModalModel::Force force_of(const SectionReader& f, int n) {
   ModalModel::Force force{static_cast<int>(f.integer("equation", 1, n)) - 1, f.number("amplitude")};
   force.harmonic = static_cast<int>(f.integer("harmonic", 0, most_harmonics, 1));
@@ -79,7 +96,7 @@ equation = 1
 coefficient = 1.0
 powers = [1, 1]
 cos_harmonic = 0                  # k > 0 multiplies by cos(k omega t)
-name = "beta"                     # optional: a parameter that moves every term and force of this name
+name = "beta"                     # optional: a parameter that moves every term and force of this name; --set modal_model.beta=2.0 sets it
 [[modal_model.force]]             # right-hand side: amplitude * cos(harmonic * omega t)
 equation = 1
 amplitude = 0.01
@@ -94,6 +111,7 @@ ModalModel modal_model_of(const Configuration& c) {
   for (const auto& t : m.tables("term")) model.terms.push_back(term_of(t, model.size()));
   for (const auto& f : m.tables("force")) model.forces.push_back(force_of(f, model.size()));
   model.mirror_subtype = m.text("mirror_subtype", "PF");
+  read_named_numbers(m, model);
   m.no_others();
   if (c.schema().find("omega") && c.has("omega")) model.omega = c.number("omega");
   try {

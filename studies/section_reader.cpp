@@ -46,8 +46,9 @@ std::optional<double> number_of(const toml::node& node) {
   return x && std::isfinite(*x) ? x : std::nullopt;
 }
 std::optional<int> integer_of(const toml::node& node) {
+  constexpr std::int64_t largest = 999999;
   const auto i = node.value_exact<std::int64_t>();
-  return i && std::abs(*i) < 1000000 ? std::optional<int>(static_cast<int>(*i)) : std::nullopt;
+  return i && *i >= -largest && *i <= largest ? std::optional<int>(static_cast<int>(*i)) : std::nullopt;
 }
 std::optional<std::string> text_of(const toml::node& node) { return node.value_exact<std::string>(); }
 
@@ -129,6 +130,12 @@ std::vector<int> SectionReader::integers(const std::string& key) const {
 std::vector<std::string> SectionReader::texts(const std::string& key) const {
   return array(key, "an array of texts", [](const toml::node& n) { return items_of<std::string>(n, text_of); });
 }
+std::vector<std::string> SectionReader::text_or_texts(const std::string& key) const {
+  return array(key, "a text or an array of texts", [](const toml::node& n) {
+    if (auto one = text_of(n)) return std::optional(std::vector{std::move(*one)});
+    return items_of<std::string>(n, text_of);
+  });
+}
 std::vector<std::vector<double>> SectionReader::rows(const std::string& key) const {
   return array(key, "an array of rows, each an array of numbers", [](const toml::node& n) {
     return items_of<std::vector<double>>(n, [](const toml::node& row) { return items_of<double>(row, number_of); });
@@ -181,10 +188,15 @@ std::vector<SectionReader> SectionReader::tables(const std::string& key) const {
   return all;
 }
 
+std::vector<std::string> SectionReader::others() const {
+  std::vector<std::string> names;
+  for (const auto& [key, node] : node_->table)
+    if (const std::string name(key.str()); !asked_->contains(name)) names.push_back(name);
+  return names;
+}
+
 void SectionReader::no_others() const {
-  for (const auto& [key, node] : node_->table) {
-    const std::string name(key.str());
-    if (asked_->contains(name)) continue;
+  for (const std::string& name : others()) {
     const std::string near = nearest(name, {asked_->begin(), asked_->end()});
     throw error(name, near.empty() ? fmt::format("unknown key; {} takes {}", name_, fmt::join(*asked_, ", "))
                                    : fmt::format("unknown key, did you mean {}?", near));

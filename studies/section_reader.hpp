@@ -25,12 +25,14 @@ class SectionReader {
   std::vector<double> numbers(const std::string& key, std::optional<std::vector<double>> fallback = std::nullopt) const;
   std::vector<int> integers(const std::string& key) const;
   std::vector<std::string> texts(const std::string& key) const;
+  std::vector<std::string> text_or_texts(const std::string& key) const;
   std::vector<std::vector<double>> rows(const std::string& key) const;                                      ///< an array of arrays of numbers
   std::vector<std::vector<std::string>> text_rows(const std::string& key) const;                            ///< an array of arrays of texts
   std::vector<std::pair<std::string, double>> named_numbers(const std::string& key) const;                  ///< a table of numbers, by name
   std::vector<std::pair<std::string, std::vector<std::string>>> named_texts(const std::string& key) const;  ///< a table of arrays of texts
   std::vector<SectionReader> tables(const std::string& key) const;                                          ///< [[section.key]], none if absent
-  void no_others() const;
+  std::vector<std::string> others() const;                                                                  ///< keys that were not asked for
+  void no_others() const;                                                                                   ///< InputError if there are any
 
   InputError error(const std::string& key, const std::string& what) const;  ///< "file:line: section.key = value: what"
   InputError error(const std::string& what) const;                          ///< about the whole section

@@ -34,12 +34,13 @@ Ansatz listed_ansatz(const Configuration& c, int coordinates) {
 }  // namespace
 
 void add_ansatz_keys(Schema& s, const std::string& own_default) {
-  std::vector<std::string> kinds = {"complete", "list", "frozen", "combinatorial-32", "combinatorial-32-printed"};
+  std::vector<std::string> kinds = {"auto", "complete", "list", "frozen", "combinatorial-32", "combinatorial-32-printed"};
   if (!own_default.empty()) kinds.insert(kinds.begin(), own_default);
   s.add({.name = "ansatz.kind",
-         .description = "harmonics kept: 0..H of omega/nu in all coordinates, your lists, n omega with the linear response frozen, or the paper's "
+         .description = "harmonics kept: auto is combinatorial-32 for two coordinates, else complete; 0..H of omega/nu in all coordinates, your "
+                        "lists, n omega with the linear response frozen, or the paper's "
                         "combinatorial response (3,2) by exact projection or with its printed terms only",
-         .default_value = own_default.empty() ? std::string("combinatorial-32") : own_default,
+         .default_value = own_default.empty() ? std::string("auto") : own_default,
          .choices = kinds});
   s.add({.name = "ansatz.motion",
          .description = "of the combinatorial response: q1 at 1/2, 3/2 and q2 at 0, 1, 2 (60), or q2 at 1/2, 1, 3/2 (70)",
@@ -60,9 +61,15 @@ void add_ansatz_keys(Schema& s, const std::string& own_default) {
            .closed_lower = true});
 }
 
+std::string ansatz_kind(const Configuration& c, const ForcedSystem& forced) {
+  const std::string& kind = c.text("ansatz.kind");
+  if (kind != "auto") return kind;
+  return forced.coordinates.size() == 2 ? "combinatorial-32" : "complete";
+}
+
 AveragedEquations averaged_of(const Configuration& c, const ForcedSystem& forced) {
   const int n = static_cast<int>(forced.coordinates.size());
-  const std::string& kind = c.text("ansatz.kind");
+  const std::string kind = ansatz_kind(c, forced);
   const bool coupled = c.text("ansatz.motion") == "coupled";
   AveragedEquations a;
   if (kind.starts_with("combinatorial") && n != 2) throw c.error("ansatz.kind", fmt::format("is for two coordinates, the model has {}", n));

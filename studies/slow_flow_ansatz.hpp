@@ -20,6 +20,9 @@ struct AveragedEquations {
 /// [ansatz]. `own_default`: a further kind, which the study handles itself, and the default.
 void add_ansatz_keys(Schema& schema, const std::string& own_default = "");
 /// `forced` must outlive the result. Throws InputError (one line) for lists and systems that do not fit.
+/// ansatz.kind, "auto" resolved.
+std::string ansatz_kind(const Configuration& c, const ForcedSystem& forced);
+
 AveragedEquations averaged_of(const Configuration& c, const ForcedSystem& forced);
 
 /// Amplitudes and means, then phases, of a point (x, parameters).

@@ -105,7 +105,7 @@ std::vector<std::string> check(const Configuration& c) {
   const auto s = setup(c);
   auto warnings = check_forced_system(c);
   for (auto& w : dropped_forces(s->forced, s->averaged.ansatz)) warnings.push_back(std::move(w));
-  const std::string& kind = c.text("ansatz.kind");
+  const std::string kind = ansatz_kind(c, s->forced);
   if (kind == "combinatorial-32-printed")
     warnings.emplace_back("the printed equations drop terms: ansatz.kind = \"combinatorial-32\" keeps all of them on the same harmonics");
   if (kind == "complete" && c.integer("ansatz.nu") == 1)

@@ -50,10 +50,14 @@ Geometry complete(double a, double m, double x_m) {
 
 Geometry from_height(double a, double m, double h) { return complete(a, m, std::asinh(h / (2.0 * a * std::sinh(m)))); }
 
+// A level cable stands at the limit of what two lengths and a tension can be, and its height goes with the root of the distance from that limit:
+// what is level but for rounding of the computer, or below the limit by rounding of printed numbers, is level.
+constexpr double computer_rounding = 1e-13, printed_rounding = 1e-9;
+
 // x_m from cosh x_m, which must reach 1.
 Geometry from_cosh(double a, double m, double cosh_xm, const char* what, double given, double least) {
-  if (cosh_xm < 1.0 - 1e-13) refuse("{} {:g} m is out of reach: with the other two given it is at least {:g} m", what, given, least);
-  return complete(a, m, std::acosh(std::max(1.0, cosh_xm)));
+  if (cosh_xm < 1.0 - printed_rounding) refuse("{} {:g} m is out of reach: with the other two given it is at least {:g} m", what, given, least);
+  return complete(a, m, cosh_xm < 1.0 + computer_rounding ? 0.0 : std::acosh(cosh_xm));
 }
 
 double tension_length(const GeometryInput& in) { return *in.horizontal_tension / in.weight_per_length; }
@@ -90,7 +94,7 @@ Geometry from_upper_tension(const GeometryInput& in) {
     return g.a * std::cosh(g.x2);
   };
   const auto least = boost::math::tools::brent_find_minima([&](double lm) { return tension(std::exp(lm)); }, std::log(1e-6), std::log(largest_x), 50);
-  if (wanted < least.second)
+  if (wanted < least.second * (1.0 - printed_rounding))
     refuse("the tension at the upper end, {:g} N, is out of reach: it is at least {:g} N", *in.upper_tension, least.second * in.weight_per_length);
   const double m = root([&](double x) { return wanted - tension(x); }, std::exp(least.first) * 1e-9, std::exp(least.first));
   return from_height(0.5 * b / m, m, h);
@@ -98,11 +102,44 @@ Geometry from_upper_tension(const GeometryInput& in) {
 
 Geometry solve(const GeometryInput& in);
 
+// The level cable of the other two, if it has the tension.
+std::optional<Geometry> level_with_tension(GeometryInput with, double wanted) {
+  with.height = 0.0;
+  try {
+    const Geometry g = solve(with);
+    if (std::abs(g.a * std::cosh(g.x2) - wanted) <= printed_rounding * wanted) return g;
+  } catch (const std::invalid_argument&) {
+  }
+  return std::nullopt;
+}
+
+// The level cable of the tension and one of span, length and sag, if the other agrees: a last resort where printed digits leave no cable at all.
+std::optional<Geometry> level_by_one(const GeometryInput& in) {
+  constexpr std::optional<double> GeometryInput::*lengths[] = {&GeometryInput::span, &GeometryInput::length, &GeometryInput::sag};
+  constexpr double Geometry::*found[] = {&Geometry::span, &Geometry::length, &Geometry::sag};
+  for (const int kept : {0, 1, 2}) {
+    if (!(in.*lengths[kept])) continue;
+    GeometryInput level{.height = 0.0, .upper_tension = in.upper_tension, .weight_per_length = in.weight_per_length};
+    level.*lengths[kept] = in.*lengths[kept];
+    try {
+      const Geometry g = solve(level);
+      bool agrees = true;
+      for (const int k : {0, 1, 2})
+        if (in.*lengths[k]) agrees = agrees && std::abs(g.*found[k] - *(in.*lengths[k])) <= printed_rounding * *(in.*lengths[k]);
+      if (agrees) return g;
+    } catch (const std::invalid_argument&) {
+    }
+  }
+  return std::nullopt;
+}
+
 // Any two of the others beside the tension at the upper end: the largest horizontal tension that gives it.
 Geometry from_upper_tension_and(const GeometryInput& in) {
   const double wanted = *in.upper_tension / in.weight_per_length;
   GeometryInput with = in;
   with.upper_tension.reset();
+  if (!in.height)
+    if (const auto level = level_with_tension(with, wanted)) return *level;
   const auto at = [&](double a) {
     with.horizontal_tension = a * in.weight_per_length;
     return solve(with);
@@ -135,6 +172,8 @@ Geometry from_upper_tension_and(const GeometryInput& in) {
     above = a;
     f_above = f;
   }
+  if (!in.height)
+    if (const auto level = level_by_one(in)) return *level;
   refuse("no cable with the other two has the tension {:g} N at its upper end", *in.upper_tension);
 }
 

@@ -1,5 +1,8 @@
 // Catenary shapes: printed tables, every sufficient set, refusals.
+#include <fmt/format.h>
+
 #include <cmath>
+#include <string>
 
 #include "tests/models/catenary/reference.hpp"
 
@@ -87,6 +90,46 @@ TEST_CASE("catenary: the tension at the upper end with any two of the others") {
         CHECK(k.a > g.a * (1.0 - 1e-9));  // this cable, or a tauter one with the same three
       }
     }
+}
+
+TEST_CASE("catenary: a level cable is read from numbers that stand at the limit of what can be, to their last digit") {
+  // Three numbers of a level cable without its height: span, length, sag and a tension. The height goes with the root of the distance from the
+  // limit, so that 1e-16 would become 1e-8 of the length.
+  const double weight = 7.3;
+  const auto printed = [](double x, int digits) { return std::stod(fmt::format("{:.{}g}", x, digits)); };
+  for (const double a : {3.1, 123.456, 2711.3})
+    for (const double m : {0.01, 0.125, 0.7, 1.9, 3.0})
+      for (const int digits : {17, 14, 12}) {
+        const double b = 2.0 * a * m, l = 2.0 * a * std::sinh(m), f = 2.0 * a * std::sinh(0.5 * m) * std::sinh(0.5 * m);
+        const double B = printed(b, digits), L = printed(l, digits), F = printed(f, digits), H = printed(weight * a, digits),
+                     T = printed(weight * a * std::cosh(m), digits);
+        const GeometryInput triples[] = {{.span = B, .length = L, .sag = F},
+                                         {.span = B, .length = L, .horizontal_tension = H},
+                                         {.span = B, .sag = F, .horizontal_tension = H},
+                                         {.length = L, .sag = F, .horizontal_tension = H},
+                                         {.span = B, .length = L, .upper_tension = T},
+                                         {.span = B, .sag = F, .upper_tension = T},
+                                         {.length = L, .sag = F, .upper_tension = T},
+                                         {.height = 0.0, .length = L, .upper_tension = T},
+                                         {.height = 0.0, .sag = F, .upper_tension = T}};
+        int which = 0;
+        for (GeometryInput in : triples) {
+          in.weight_per_length = weight;
+          INFO("a " << a << " m " << m << " digits " << digits << " triple " << which++);
+          Geometry g{};
+          CHECK_NOTHROW(g = geometry(in));
+          // Where printed digits leave a little height it is that of the digits: cosh x_m = 1 + O(10^-digits), magnified where the cable is taut.
+          const double height = digits == 17 ? 1e-9 : 40.0 * std::pow(10.0, -0.5 * digits) / std::min(1.0, m * m);
+          CHECK(g.height <= height * g.length);
+          if (digits < 17) continue;
+          const double taut = 1e-11 / std::min(1.0, m * m);  // a from l - b or from f loses the square of m
+          CHECK(g.a == Approx(a).epsilon(taut));
+          CHECK(g.span == Approx(b).epsilon(taut));
+          CHECK(g.length == Approx(l).epsilon(taut));
+          CHECK(g.a * std::cosh(g.x2) == Approx(a * std::cosh(m)).epsilon(taut));
+        }
+      }
+  CHECK_THROWS_WITH(geometry({.span = 100.0, .length = 100.1, .horizontal_tension = 1.0, .weight_per_length = 1.0}), Catch::Contains("out of reach"));
 }
 
 TEST_CASE("catenary: what cannot hang is refused in one line") {

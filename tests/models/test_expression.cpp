@@ -2,6 +2,7 @@
 
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "models/equilibrium_model.hpp"
@@ -167,6 +168,136 @@ TEST_CASE("fixed numbers are computed into the steps and shared parts run once")
   CHECK(out[1] == Approx(std::sin(x) * std::sin(x) + std::sin(x)).epsilon(1e-15));
   CHECK_THROWS_AS(f.rebound({0, 1.0}, 1), std::invalid_argument);
   CHECK_THROWS_AS(VectorField({"x/a"}, {"x", "a"}).rebound({0, 0.0}, 1), std::invalid_argument);  // infinite whatever x
+}
+
+namespace {
+
+/// Value, slopes and second derivatives of one expression in two inputs x and n, n free or fixed beforehand.
+struct Second {
+  double f, x, n, xx, xn;
+};
+Second second_of(const std::string& text, double x, double n) {
+  using D = Dual<Dual<double, 2>, 2>;
+  const VectorField f({text}, {"x", "n"});
+  std::array<D, 2> in = {D(seed<Dual<double, 2>>(x, 0)), D(seed<Dual<double, 2>>(n, 1))};
+  for (std::size_t i = 0; i < 2; ++i) in[i].d[i] = 1.0;
+  D out;
+  f.evaluate<D>(in, std::span<D>(&out, 1));
+  return {out.v.v, out.v.d[0], out.v.d[1], out.d[0].d[0], out.d[0].d[1]};
+}
+Second fixed_exponent(const std::string& text, double x, double n) {
+  using D = Dual<Dual<double, 1>, 1>;
+  const VectorField f = VectorField({text}, {"x", "n"}).rebound({0, n}, 1);
+  D in(seed<Dual<double, 1>>(x, 0)), out;
+  in.d[0] = 1.0;
+  f.evaluate<D>(std::span<const D>(&in, 1), std::span<D>(&out, 1));
+  return {out.v.v, out.v.d[0], 0.0, out.d[0].d[0], 0.0};
+}
+
+}  // namespace
+
+TEST_CASE("a whole exponent that is a parameter is a whole exponent, free or fixed") {
+  for (const double x : {-1.7, -1.0, -0.3, 0.0, 0.3, 1.0, 1.7})
+    for (const int n : {0, 1, 2, 3, 4, 5, 7, 10}) {
+      INFO("x = " << x << ", n = " << n);
+      const auto power_of = [x](int k) { return k < 0 ? 0.0 : std::pow(x, k); };
+      const double f = power_of(n), fx = n * power_of(n - 1), fxx = n * (n - 1) * power_of(n - 2);
+      for (const Second& at : {fixed_exponent("x^n", x, n), second_of("x^n", x, n)}) {
+        CHECK(at.f == Approx(f).epsilon(1e-14).margin(1e-300));
+        CHECK(at.x == Approx(fx).epsilon(1e-14).margin(1e-300));
+      }
+      CHECK(fixed_exponent("x^n", x, n).xx == Approx(fxx).epsilon(1e-14).margin(1e-300));
+      if (x > 0.0) {
+        const Second at = second_of("x^n", x, n);
+        CHECK(at.xx == Approx(fxx).epsilon(1e-14).margin(1e-300));
+        CHECK(at.n == Approx(f * std::log(x)).epsilon(1e-14).margin(1e-300));
+        CHECK(at.xn == Approx(std::pow(x, n - 1) + fx * std::log(x)).epsilon(1e-14).margin(1e-14));
+      }
+      if (x < 0.0) CHECK(std::isnan(second_of("x^n", x, n).n));  // no real power beside a whole one
+    }
+  CHECK(fixed_exponent("x^n", -2.0, -3.0).f == Approx(-0.125).epsilon(1e-15));
+  CHECK(fixed_exponent("x^n", -2.0, -3.0).x == Approx(-3.0 / 16.0).epsilon(1e-15));
+  CHECK(second_of("x^n", -2.0, -3.0).f == Approx(-0.125).epsilon(1e-15));
+  CHECK(second_of("x^n", -2.0, 1e9 + 1.0).f == -std::numeric_limits<double>::infinity());  // odd
+  CHECK(second_of("n^x", 3.0, -2.0).f == -8.0);
+  CHECK(value("(-x)^y", 2.0, 3.0) == -8.0);
+  CHECK(value("(-2)^y", 0.0, 3.0) == -8.0);
+  CHECK(value("0^y", 0.0, 3.0) == 0.0);
+  CHECK(value("0^y", 0.0, 0.0) == 1.0);
+}
+
+TEST_CASE("slopes of powers at zero are those from above") {
+  for (const double n : {1.5, 2.0, 2.5, 3.0, 3.5, 4.0}) {
+    INFO("n = " << n);
+    const Second at = second_of("x^n", 0.0, n);
+    CHECK(at.f == 0.0);
+    CHECK(at.x == 0.0);
+    CHECK(at.n == 0.0);   // 0^n = 0 for all n > 0
+    CHECK(at.xn == 0.0);  // x^(n-1) (1 + n log x) -> 0
+    if (n > 2.0) CHECK(at.xx == 0.0);
+  }
+  CHECK(second_of("x^n", 0.0, 2.0).xx == 2.0);
+  CHECK(second_of("x^n", 0.0, 1.0).x == 1.0);
+  CHECK(std::isinf(second_of("x^n", 0.0, 1.5).xx));
+  CHECK(std::isinf(second_of("x^n", 0.0, 0.5).x));
+  CHECK(std::isinf(second_of("x^n", 0.0, -1.0).f));
+}
+
+TEST_CASE("an infinite slope in one input leaves the others' alone") {
+  using D = Dual<double, 2>;
+  for (const char* text : {"x^0.5 + 3*y", "sqrt(x) + 3*y", "x^0.3 + 3*y"}) {
+    const VectorField f({text}, {"x", "y"});
+    const D in[] = {seed<D>(0.0, 0), seed<D>(2.0, 1)};
+    D out;
+    f.evaluate<D>(in, std::span<D>(&out, 1));
+    CHECK(out.v == 6.0);
+    CHECK(std::isinf(out.d[0]));
+    CHECK(out.d[1] == 3.0);
+  }
+}
+
+TEST_CASE("Hill functions with the exponent as a parameter equal those with the power written out") {
+  const std::pair<const char*, const char*> pairs[] = {{"a*x^n/(1 + x^n)", "a*x^2/(1 + x^2)"},
+                                                       {"a/(1 + x^n) - x", "a/(1 + x^2) - x"},
+                                                       {"x^n*(1 - x)^n", "x^2*(1 - x)^2"},
+                                                       {"(x^n + a)^n", "(x^2 + a)^2"},
+                                                       {"x^(2*n) - x^n", "x^4 - x^2"},
+                                                       {"x^(-n) + x^(n+1)", "x^(-2) + x^3"},
+                                                       {"a^n*x^n", "a^2*x^2"},
+                                                       {"(x/a)^n/(1 + (x/a)^n)", "(x/a)^2/(1 + (x/a)^2)"},
+                                                       {"(-x)^n + (-x)^(n+1)", "x^2 - x^3"},
+                                                       {"x*x^n*x", "x^4"},
+                                                       {"x^n/x^n + sin(x)^n", "1 + sin(x)^2"}};
+  for (const auto& [with, without] : pairs)
+    for (const double x : {-1.3, -0.2, 0.4, 2.0}) {
+      INFO(with << " at " << x);
+      using D = Dual<double, 1>;
+      const VectorField f = VectorField({with}, {"x", "a", "n"}).rebound({0, 0.7, 2.0}, 1),
+                        g = VectorField({without}, {"x", "a"}).rebound({0, 0.7}, 1);
+      const D in = seed<D>(x, 0);
+      D a, b;
+      f.evaluate<D>(std::span<const D>(&in, 1), std::span<D>(&a, 1));
+      g.evaluate<D>(std::span<const D>(&in, 1), std::span<D>(&b, 1));
+      CHECK(a.v == Approx(b.v).epsilon(1e-14).margin(1e-14));
+      CHECK(a.d[0] == Approx(b.d[0]).epsilon(1e-13).margin(1e-13));
+    }
+}
+
+TEST_CASE("a value that is not finite is told by what makes it so") {
+  const auto why = [](const std::string& text, double x, double y) {
+    const double in[] = {x, y};
+    return VectorField({text}, {"x", "y"}).not_finite(in);
+  };
+  CHECK(why("x^y", -1.0, 2.5) == "(-1)^2.5: a negative number has whole powers only");
+  CHECK(why("x^y", 0.0, -1.0) == "0^(-1) is infinite");
+  CHECK(why("x^1.5", -2.0, 0.0) == "(-2)^1.5: a negative number has whole powers only");
+  CHECK(why("y*log(x)", -0.5, 1.0) == "log(-0.5) is not a real number");
+  CHECK(why("sqrt(x - y)", 1.0, 2.0) == "sqrt(-1) is not a real number");
+  CHECK(why("x/y", 1.0, 0.0) == "a division by zero");
+  CHECK(why("1/(x - y)", 2.0, 2.0) == "a division by zero");
+  CHECK(why("exp(x)", 1000.0, 0.0) == "a value too large for a number");
+  CHECK(why("x^y", -1.0, 3.0).empty());
+  CHECK_THROWS_WITH(VectorField({"(-2)^n*x"}, {"x", "n"}).rebound({0, 0.5}, 1), Catch::Contains("(-2)^0.5 is not a real number"));
 }
 
 TEST_CASE("bad text gives one line with the equation's number") {

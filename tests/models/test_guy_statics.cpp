@@ -307,3 +307,26 @@ TEST_CASE("impossible guys are refused") {
   CHECK_THROWS_AS(tangent(oklahoma_rest(Form::first_order)), std::invalid_argument);
   CHECK_THROWS_AS(reaction({}, 1.0, 0.0, GroupTerms::axial), std::invalid_argument);
 }
+
+TEST_CASE("guys that their own weight strains by several per cent") {
+  // H, T at the anchor, T at the mast of elastic catenaries: Newton on both end conditions from many starts, in another program
+  const Guy g{20.0, 20.0, 5000013.48, 616.538, 9.81};
+  struct {
+    double length, H, lower, upper;
+  } const cases[] = {
+      {0.97, 149990.03965558362, 167296.97700747784, 283048.90618366504}, {0.98, 128707.32316445344, 139285.88846195268, 255654.77588176148},
+      {0.99, 111938.87218036065, 117881.66396167602, 234726.39145458027}, {1.0, 98978.48102160015, 101957.02811444638, 219158.28215531277},
+      {1.02, 81126.23980290345, 81458.99615914522, 199122.34657471703},   {1.05, 65634.70708557995, 66076.96308901624, 184089.45057223891},
+      {1.1, 52283.22452472193, 56509.28768229136, 174739.97473571243}};
+  for (const auto& c : cases) {
+    const Statics s = solve(g, Known::unstressed_length, c.length * std::hypot(20.0, 20.0));
+    INFO("length " << c.length);
+    CHECK(s.horizontal_tension == Approx(c.H).epsilon(1e-10));
+    CHECK(s.lower_tension == Approx(c.lower).epsilon(1e-10));
+    CHECK(s.upper_tension == Approx(c.upper).epsilon(1e-10));
+    for (const Known known : {Known::horizontal_tension, Known::sag}) {
+      const Statics again = solve(g, known, value_of(s, known));
+      CHECK(again.unstressed_length == Approx(s.unstressed_length).epsilon(1e-9));
+    }
+  }
+}

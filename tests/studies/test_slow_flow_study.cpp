@@ -145,3 +145,14 @@ TEST_CASE("slow-flow study: coordinates by the model's names, starts off the mod
   CHECK(modes.column("/branches/IP1", "z1_h1").values.front() > 0.5);
   CHECK(many.err.find("z1_h1 [m]") != std::string::npos);
 }
+
+TEST_CASE("without [ansatz] any number of coordinates is taken", "[slow_flow_study]") {
+  const Folder f;
+  for (const char* frequency : {"[1.0]", "[1.0, 2.0]", "[1.0, 2.0, 3.0]"}) {
+    std::ofstream(f / "free.toml") << "study = \"slow-flow\"\n[modal_model]\nfrequency = " << frequency
+                                   << "\n[[modal_model.force]]\nequation = 1\namplitude = 0.1\n[continuation]\nrange = [0.8, 1.2]\n";
+    const Ran r = program(f, "check free.toml");
+    INFO(frequency << r.err);
+    CHECK(r.status == 0);
+  }
+}
