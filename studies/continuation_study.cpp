@@ -102,7 +102,7 @@ ExitStatus run(const Configuration& c, RunContext& context) {
   output.columns = s.source->columns(*f);
   ResultFile file(context.output);
   write_study(file, c);
-  s.source->write(file);
+  s.source->write(file, context);
   Network net(*f, s.network);
   net.set_namer(s.source->namer());
   net.set_observer([&](const Branch& b, int i) {
@@ -120,8 +120,8 @@ ExitStatus run(const Configuration& c, RunContext& context) {
   if (const auto left = net.not_followed(); !left.empty() && !net.stopped() && s.network.depth > 0)
     context.warn(fmt::format("branches at {} are not followed: continuation.depth is {}", fmt::join(left, ", "), s.network.depth));
   context.progress.clear();
-  if (context.json) fmt::print("{}", output.json(branches));
-  if (!context.quiet) fmt::print(stderr, "{}", output.text(branches));
+  output.report(context.report, branches);
+  context.print(output.text(branches));
   return finish(file, context, branches);
 }
 

@@ -40,7 +40,7 @@ class EquilibriumSource {
   virtual continuation::Network::Namer namer() const = 0;
   /// Points near solutions, in the order in which they are to be tried; f has one free parameter.
   virtual std::vector<Start> starts(const Problem& f, const std::string& lens, double lower, double upper) const = 0;
-  virtual void write(ResultFile& file) const = 0;
+  virtual void write(ResultFile& file, RunContext& context) const = 0;
   /// The branches as they are to be told: special points that the source does not stand for are marked, and that is warned of.
   virtual std::vector<continuation::Branch> marked(const std::vector<continuation::Branch>& branches, RunContext&) const { return branches; }
 };

@@ -273,7 +273,7 @@ void verify(const Setup& s, const OrbitBranches& orbits, ResultFile& file, RunCo
   int number = 0;
   for (const auto& check : checks) write_orbit(file, fmt::format("/verification/motions/{:03}", ++number), orbits, check.motion);
   file.flush();
-  if (!context.quiet) fmt::print(stderr, "\n{}", checks_text(orbits, checks, s.parameter));
+  context.print("\n" + checks_text(orbits, checks, s.parameter));
   for (const auto& check : checks)
     if (check.ok && check.defect > 1e3 * std::max(s.orbits.truncation_tolerance, 1e-9) && check.motion.stable)
       context.warn(fmt::format("the motion of {} at {:g} misses its start by {:.1e} when integrated", check.motion.branch, check.p, check.defect));
@@ -284,7 +284,7 @@ ExitStatus run(const Configuration& c, RunContext& context) {
   for (const auto& w : check_forced_system(c)) context.warn(w);
   ResultFile file(context.output);
   write_study(file, c);
-  write_forced_system(file, c);
+  write_forced_system(file, context, c);
   OrbitBranches orbits(forced_system_of(c, {s.parameter}), s.orbits, context);
   const BranchOutput output = orbit_output(orbits, s.parameter, s.shown_harmonics);
   orbits.add_starts([&](const HarmonicBalance& hb) { return averaged_starts(c, s, hb); });
@@ -302,14 +302,14 @@ ExitStatus run(const Configuration& c, RunContext& context) {
   if (branches.empty()) context.warn("no periodic motion was found in the range");
   output.write_special_points(file, branches);
   file.flush();
-  if (context.json) fmt::print("{}", output.json(branches));
-  if (!context.quiet) fmt::print(stderr, "{}", output.text(branches));
+  output.report(context.report, branches);
+  context.print(output.text(branches));
   if (!interrupted) verify(s, orbits, file, context);
   if (!s.second.empty() && !interrupted) {
     const Chart chart = follow_all(c, s, orbits, file, context);
     const auto units = forced_system_of(c, {s.parameter, s.second}).lens_units;
     write_chart_points(file, s, units, chart);
-    if (!context.quiet) fmt::print(stderr, "\n{}", chart_text(s, chart));
+    context.print("\n" + chart_text(s, chart));
   }
   return finish(file, context, branches);
 }

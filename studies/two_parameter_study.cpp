@@ -139,22 +139,21 @@ bool repeats(const Problem& f, const std::vector<DefiningCurve>& curves, const D
   return 2 * known > asked;
 }
 
-std::string json(const Setup& s, int n, const std::vector<PointColumn>& columns, const std::vector<DefiningCurve>& curves) {
-  std::string points, summary;
+void report(Json& results, const Setup& s, int n, const std::vector<PointColumn>& columns, const std::vector<DefiningCurve>& curves) {
+  Json points = Json::array(), summary = Json::array();
   for (const auto& c : curves) {
     for (const auto& z : c.special) {
-      std::string state;
+      Json o = Json::object();
+      o.put("curve", c.name).put("type", z.type).put(s.first, z.u[n]).put(s.second, z.u[n + 1]);
       for (const auto& column : columns)
-        if (const double x = column.value(z.u); std::isfinite(x)) state += fmt::format(R"(, "{}": {:.17g})", column.name, x);
-      points += fmt::format(R"({}    {{"curve": "{}", "type": "{}", "{}": {:.17g}, "{}": {:.17g}{}, "residual": {:.3g}}})",
-                            points.empty() ? "\n" : ",\n", c.name, z.type, s.first, z.u[n], s.second, z.u[n + 1], state, z.residual);
+        if (const double x = column.value(z.u); std::isfinite(x)) o.put(column.name, x);
+      points.add(std::move(o.put("residual", z.residual)));
     }
-    summary += fmt::format(
-        R"({}    {{"name": "{}", "type": "{}", "subtype": "{}", "born_at": "{}", "points": {}, "start_reason": "{}", "stop_reason": "{}"}})",
-        summary.empty() ? "\n" : ",\n", c.name, to_string(c.type), c.subtype, c.born_at, c.u.cols(), to_string(c.start_reason),
-        to_string(c.stop_reason));
+    Json o = Json::object();
+    o.put("name", c.name).put("type", to_string(c.type)).put("subtype", c.subtype).put("born_at", c.born_at).put("points", c.u.cols());
+    summary.add(std::move(o.put("start_reason", to_string(c.start_reason)).put("stop_reason", to_string(c.stop_reason))));
   }
-  return fmt::format("{{\n  \"special_points\": [{}\n  ],\n  \"curves\": [{}\n  ]\n}}\n", points, summary);
+  results.put("special_points", std::move(points)).put("curves", std::move(summary));
 }
 
 std::string text(const Setup& s, int n, const std::vector<DefiningCurve>& curves) {
@@ -176,7 +175,7 @@ ExitStatus run(const Configuration& c, RunContext& context) {
   const int n = f->size();
   ResultFile file(context.output);
   write_study(file, c);
-  s.source->write(file);
+  s.source->write(file, context);
   const Observer observer = [](const Branch&, int) { return !interrupted; };
   Network net(*f, s.network);
   net.set_namer(s.source->namer());
@@ -243,8 +242,8 @@ ExitStatus run(const Configuration& c, RunContext& context) {
     table.push_back(std::move(state));
   }
   file.table("/special_points", table, {names, types});
-  if (context.json) fmt::print("{}", json(s, n, s.source->columns(*f2), curves));
-  if (!context.quiet) fmt::print(stderr, "{}", text(s, n, curves));
+  report(context.report, s, n, s.source->columns(*f2), curves);
+  context.print(text(s, n, curves));
   return finish(file, context, net.branches());
 }
 
