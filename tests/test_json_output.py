@@ -106,27 +106,8 @@ grid = 3
 
 def frequency_means_one_thing(folder):
     """Hopf points of an averaged stay: Hz of the excitation, and the imaginary part of the critical eigenvalue beside it."""
-    stay = """study = "superharmonic"
-[cable]
-chord_length = 192.0
-axial_stiffness = 2.17e9
-chord_tension = 5.5e6
-mass_per_length = 81.05
-inclination_deg = 30.0
-[model]
-terms = "reduced"
-[damping]
-out_of_plane = 0.002
-in_plane = 0.002
-[support_motion]
-amplitude = 0.5
-[continuation]
-parameter = "omega"
-range = [1.7, 2.1]
-[verification]
-enabled = false
-"""
-    told, path = run(folder, stay)
+    stay = open(os.path.join(HERE, "..", "studies", "oresund-superharmonic.toml")).read()
+    told, path = run(folder, stay, "verification.enabled=false")
     hopf = [p for p in told["special_points"] if p["type"] == "HB"]
     check(hopf, "no Hopf point")
     with h5py.File(path) as file:
@@ -153,7 +134,6 @@ def extremes_with_their_sign(folder):
     def model(kind, a):
         return f"""study = "{kind}"
 [modal_model]
-omega = 1.0
 frequency = [1.4142135623730951]
 damping = [0.1]
 term = [{{equation = 1, coefficient = {a}, powers = [2]}}]
@@ -293,7 +273,7 @@ def what_does_not_settle_is_told(folder):
 
 def command_line(folder):
     lines = {(): "a command is needed", ("rn", "x.toml"): "did you mean `whirl run`", ("my.toml",): "whirl run my.toml", ("lst",): "`whirl list`",
-             ("qqqqq",): "one of run", ("help", "exprt"): "'export'", ("run",): "FILE", ("--vers",): "--vers"}
+             ("qqqqq",): "one of run", ("help", "exprt"): "'export'", ("run",): "FILE", ("--vers",): "see whirl --help"}
     for words, expected in lines.items():
         done = whirl(folder, *words)
         check(done.returncode == 2 and done.stdout == "" and done.stderr.count("\n") == 1, f"{words}: {done.returncode} {done.stderr}")
