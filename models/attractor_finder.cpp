@@ -9,6 +9,7 @@
 #include "core/fourier.hpp"
 #include "models/attractors.hpp"
 #include "models/lyapunov.hpp"
+#include "models/slow_decay.hpp"
 
 namespace whirl::models {
 namespace {
@@ -150,6 +151,7 @@ Settled AttractorFinder::settle(Vector y, const AttractorSet& known, double phas
       if (count < (known.capture(i).at_once() ? 1 : Capture::hits)) continue;
       s.known = i;
       s.kind = known[i].kind;
+      s.why.clear();
       return s;
     }
     for (auto& [attractor, capture] : candidates)
@@ -157,6 +159,7 @@ Settled AttractorFinder::settle(Vector y, const AttractorSet& known, double phas
         s.fresh = std::move(attractor);
         s.capture = std::move(capture);
         s.kind = s.fresh->kind;
+        s.why.clear();
         return s;
       }
     if (k >= next_try) {
@@ -197,13 +200,15 @@ Settled AttractorFinder::settle(Vector y, const AttractorSet& known, double phas
         return s;
       }
       if (s.kind == MotionKind::diverging) return s;
+      if (s.ahead && known.find(*s.ahead) < 0 && candidates.empty()) candidates.emplace_back(*s.ahead, Capture(*s.ahead, transient_, fine_));
       ask *= 2;
       std::fill(hits.begin(), hits.end(), 0);
       for (Eigen::Index j = 0; j < past.cols(); ++j) past.col(j) = y.array() + 1e3;  // no distances across the gap
     }
   }
   s.kind = MotionKind::unsettled;
-  s.why = options_.interrupted && *options_.interrupted ? "interrupted" : fmt::format("not settled after {} periods", s.periods);
+  const std::string slow = s.why.empty() ? "" : ": " + s.why;  // what the last question told
+  s.why = options_.interrupted && *options_.interrupted ? "interrupted" : fmt::format("not settled after {} periods{}", s.periods, slow);
   return s;
 }
 
@@ -222,7 +227,8 @@ bool AttractorFinder::not_periodic(Settled& s, Vector& y) {
   const double resolution = std::log(static_cast<double>(n)) / (n * fine_.period());
   const int half = n / 2;
   const double spread = rms_spread(r.points.rightCols(half)), before = rms_spread(r.points.leftCols(half));
-  const bool lasting = spread > 0.9 * before && spread > 1e-6 * (1.0 + y.norm());
+  constexpr double visible = 0.1;  // relative change between the halves
+  const bool lasting = spread > (1.0 - visible) * before && spread > 1e-6 * (1.0 + y.norm());
   Attractor a;
   a.points = r.points;
   a.lyapunov = r.exponent;
@@ -233,6 +239,11 @@ bool AttractorFinder::not_periodic(Settled& s, Vector& y) {
   } else if (lasting && std::abs(r.exponent) < std::max(resolution, r.error)) {
     double f = torus_frequency(r.points);
     if (f == 0.0) return false;
+    if (auto decay = slow_decay(*this, r.points.rightCols(half), 1, {.periods = double(half), .visible = visible})) {
+      s.why = decay->words(fine_.period());
+      s.ahead = std::move(decay->motion);
+      return false;
+    }
     f -= std::floor(f);
     a.second_frequency = std::min(f, 1.0 - f);
     a.kind = MotionKind::quasi_periodic;

@@ -1,7 +1,7 @@
 #pragma once
 /// Attractors of a forced modal system seen in its stroboscopic map P, x(t) -> x(t + T): periodic of multiple m (m points of P, P^m x = x, all
 /// Floquet multipliers inside the unit circle), quasi-periodic (the points fill closed curves, largest Lyapunov exponent zero), chaotic (it is
-/// positive).
+/// positive). A motion that decays more slowly than the run can show is none of them: `slow_decay.hpp` tells it from a torus.
 ///
 /// Two attractors are one if their stroboscopic points are: a shift in time by excitation periods makes no difference. A mirror image under a
 /// reflection of the system is another attractor, linked by `mirror_of`.
@@ -105,10 +105,11 @@ struct Settled {
   std::optional<Attractor> fresh;  ///< an attractor that is not in it
   Capture capture;                 ///< of the fresh one
   MotionKind kind = MotionKind::failed;
-  int periods = 0;        ///< excitation periods until decided
-  Vector state;           ///< last stroboscopic point
-  double distance = 0.0;  ///< |x(t + T) - x(t)| there
-  std::string why;        ///< if unsettled or failed
+  int periods = 0;                 ///< excitation periods until decided
+  Vector state;                    ///< last stroboscopic point
+  double distance = 0.0;           ///< |x(t + T) - x(t)| there
+  std::string why;                 ///< if unsettled or failed
+  std::optional<Attractor> ahead;  ///< the periodic motion that a decay too slow to be seen leads to
 };
 
 class AttractorFinder {

@@ -5,6 +5,8 @@
 #include <deque>
 #include <numbers>
 
+#include "models/slow_decay.hpp"
+
 namespace whirl::models {
 namespace {
 
@@ -46,6 +48,13 @@ double largest_exponent(const ModalSystem<double>& system, const Vector& start, 
   return sum / ((o.lyapunov_periods - skip) * period);
 }
 
+// Columns of a ring of the last so many of `count`, oldest first.
+Matrix in_order(const Matrix& ring, int count) {
+  Matrix out(ring.rows(), ring.cols());
+  for (Eigen::Index j = 0; j < ring.cols(); ++j) out.col(j) = ring.col((count + j) % ring.cols());
+  return out;
+}
+
 // Largest distances of m periods in the middle and at the end of a run: does the motion last?
 class Lasting {
  public:
@@ -65,6 +74,7 @@ class Lasting {
     if (window_ < 8) return 0;
     return static_cast<int>(std::min_element(late_.begin() + 1, late_.end()) - late_.begin());
   }
+  int window() const { return window_; }
   double ratio(int m) const { return late_[static_cast<std::size_t>(m)] / early_[static_cast<std::size_t>(m)]; }
   int apart() const { return last_ - middle_; }  ///< periods between the two
 
@@ -74,6 +84,16 @@ class Lasting {
 };
 
 constexpr double lasts_within = 0.03;
+
+// A motion that seems to last: does it decay too slowly to be seen? `points`: the last stroboscopic ones.
+bool decays_unseen(const ModalSystem<double>& system, const Matrix& points, const Lasting& lasting, SteadyMotion& motion) {
+  AttractorFinder finder(system);
+  const auto decay = slow_decay(finder, points, lasting.nearest(), {.periods = double(lasting.apart()), .visible = lasts_within});
+  if (!decay) return false;
+  motion.decay_rate = decay->rate;
+  motion.why = fmt::format("after {} periods it {}", motion.periods_integrated, decay->words(two_pi / system.omega));
+  return true;
+}
 
 // True if distances changed between middle and end of the run: then that is what is known, not what the motion will be.
 bool still_changing(const Lasting& lasting, double period, SteadyMotion& motion) {
@@ -142,6 +162,7 @@ SteadyMotion settle(const ModalSystem<double>& system, const Vector& y0, const S
   std::vector<double> last(static_cast<std::size_t>(o.max_multiple) + 1, 0.0);
   std::vector<int> calm(last.size(), 0);
   Lasting lasting(o.max_periods, o.max_multiple);
+  Matrix late(2 * n, std::min(o.max_periods, lasting.window()));  // the last stroboscopic points, in a ring
   for (int k = 1; k <= o.max_periods && motion.multiple == 0; ++k) {
     if (o.interrupted && *o.interrupted) break;
     if (!run.advance(k * period)) {
@@ -151,6 +172,7 @@ SteadyMotion settle(const ModalSystem<double>& system, const Vector& y0, const S
       return motion;
     }
     const Vector x = run.state();
+    late.col((k - 1) % late.cols()) = x;
     motion.periods_integrated = k;
     const double limit = o.tolerance * (1.0 + x.norm());
     for (int m = 1; m <= std::min(o.max_multiple, static_cast<int>(past.size())); ++m) {
@@ -187,8 +209,10 @@ SteadyMotion settle(const ModalSystem<double>& system, const Vector& y0, const S
       // A tangent vector along a torus neither grows nor shrinks; over N periods the estimate is good to about ln(N)/N.
       const double resolution = std::log(static_cast<double>(o.lyapunov_periods)) / (o.lyapunov_periods * period);
       if (motion.lyapunov > resolution) motion.kind = MotionKind::chaotic;
-      else if (motion.lyapunov > -resolution) motion.kind = MotionKind::quasi_periodic;
-      else motion.why = fmt::format("not settled after {} periods, largest Lyapunov exponent {:.2g} 1/s", motion.periods_integrated, motion.lyapunov);
+      else if (motion.lyapunov > -resolution) {
+        if (!decays_unseen(system, in_order(late, motion.periods_integrated), lasting, motion)) motion.kind = MotionKind::quasi_periodic;
+      } else
+        motion.why = fmt::format("not settled after {} periods, largest Lyapunov exponent {:.2g} 1/s", motion.periods_integrated, motion.lyapunov);
     }
   }
   motion.record_periods = motion.multiple > 0 ? motion.multiple : o.record_periods;

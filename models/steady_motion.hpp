@@ -7,7 +7,8 @@
 ///
 ///     they fall (or grow) by more than 3 %      unsettled; `decay_rate` is measured, `why` says it
 ///     they last, largest Lyapunov exponent > 0  chaotic
-///     they last, exponent zero                  quasi-periodic, as far as can be told: a decay of less than 3 % over all those periods looks alike
+///     they last, exponent zero                  quasi-periodic; or unsettled, `decay_rate` from the multipliers, where a stable periodic motion is
+///                                               found in the middle whose damping is too weak to be seen over those periods (slow_decay.hpp)
 ///
 ///     SteadyMotion m = settle(system, y0, {.max_periods = 2000});      // y0 = (q, q') at omega t = 0
 ///     m.harmonic(0, 2.0)                                                // amplitude and phase of cos(2 omega t + phase) in q1

@@ -127,11 +127,11 @@ std::string AttractorCheck::text(const std::string& parameter) const {
   return out + grown;
 }
 
-std::string AttractorCheck::json(const std::string& parameter) const {
+Json AttractorCheck::json(const std::string& parameter) const {
   const auto missing = std::count_if(met_.begin(), met_.end(), [](const auto& m) { return m.branch.empty(); });
-  return fmt::format(
-      R"({{"starts": {}, "values": {}, "attractors": {}, "without_branch": {}, "unsettled": {}, "diverged": {}, "failed": {}, "text": "{}"}})",
-      starts_, values_.size(), met_.size(), missing, unsettled_, diverged_, failed_, text(parameter));
+  Json o = Json::object();
+  o.put("starts", starts_).put("values", values_.size()).put("attractors", met_.size()).put("without_branch", missing);
+  return std::move(o.put("unsettled", unsettled_).put("diverged", diverged_).put("failed", failed_).put("text", text(parameter)));
 }
 
 void AttractorCheck::write(ResultFile& file, const std::string& parameter) const {

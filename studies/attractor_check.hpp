@@ -48,7 +48,7 @@ class AttractorCheck {
   /// One line, "N starts integrated at M values of omega: ..."; "" if none was.
   std::string text(const std::string& parameter) const;
   /// {"starts": 96, "values": 12, "missing": 0, ..., "text": "..."}
-  std::string json(const std::string& parameter) const;
+  Json json(const std::string& parameter) const;
   /// /verification/attractors: one row for each attractor met.
   void write(ResultFile& file, const std::string& parameter) const;
 

@@ -84,8 +84,8 @@ class AveragedSource : public EquilibriumSource {
     for (auto& s : all) s.u = symmetric_to_the_bit(f, s.u);
     return all;
   }
-  void write(ResultFile& file) const override {
-    write_forced_system(file, c_);
+  void write(ResultFile& file, RunContext& context) const override {
+    write_forced_system(file, context, c_);
     file.attribute("/study", "nu", static_cast<double>(ansatz_.nu));
   }
 

@@ -183,17 +183,19 @@ void write_accuracy(ResultFile& file, const BasinMap& map, double seconds) {
   file.scalar("/basins", "starts_per_second", rate, "1/s", "integrated starts per second of wall time, on all threads, checks included");
 }
 
-std::string json_of(const std::vector<AttractorRow>& rows, const BasinMap& map, const Setup& s, double seconds) {
-  std::string a;
-  for (std::size_t i = 0; i < rows.size(); ++i)
-    a += fmt::format("{}    {{\"number\": {}, \"share\": {:.10g}, \"cells\": {}, {}}}", a.empty() ? "\n" : ",\n", i + 1,
-                     map.share(static_cast<int>(i)), map.cells[i], attractor_json(rows[i], s.forced));
+void report(Json& results, const std::vector<AttractorRow>& rows, const BasinMap& map, const Setup& s, double seconds) {
+  Json attractors = Json::array();
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    Json o = Json::object();
+    o.put("number", i + 1).put("share", map.share(static_cast<int>(i))).put("cells", map.cells[i]);
+    put_attractor(o, rows[i], s.forced);
+    attractors.add(std::move(o));
+  }
   const auto count = [&](int value) { return (map.cell.array() == value).count(); };
-  return fmt::format(
-      "{{\n  \"attractors\": [{}\n  ],\n  \"cells\": {}, \"integrated\": {}, \"unsettled\": {}, \"diverging\": {}, \"not_computed\": {},\n"
-      "  \"checked\": {}, \"disagreed\": {}, \"seconds\": {:.3g}\n}}\n",
-      a, map.cell.size(), map.integrated, count(BasinMap::unsettled), count(BasinMap::diverging), count(BasinMap::not_computed), map.checked,
-      map.disagreed, seconds);
+  results.put("attractors", std::move(attractors)).put("cells", map.cell.size()).put("integrated", map.integrated);
+  results.put("unsettled", count(BasinMap::unsettled)).put("diverging", count(BasinMap::diverging));
+  results.put("not_computed", count(BasinMap::not_computed)).put("checked", map.checked).put("disagreed", map.disagreed);
+  results.put("seconds", seconds);
 }
 
 ExitStatus run(const Configuration& c, RunContext& context) {
@@ -201,7 +203,7 @@ ExitStatus run(const Configuration& c, RunContext& context) {
   for (const auto& w : check_forced_system(c)) context.warn(w);
   ResultFile file(context.output);
   write_study(file, c);
-  write_forced_system(file, c);
+  write_forced_system(file, context, c);
   file.flush();
   const auto begin = std::chrono::steady_clock::now();
   const auto elapsed = [&] { return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count(); };
@@ -226,14 +228,12 @@ ExitStatus run(const Configuration& c, RunContext& context) {
   write_accuracy(file, map, seconds);
   const auto unsettled = (map.cell.array() == BasinMap::unsettled).count();
   if (unsettled > 0) context.warn(fmt::format("{} starts did not settle within {} excitation periods", unsettled, s.options.settle.max_periods));
-  if (context.json) fmt::print("{}", json_of(rows, map, s, seconds));
-  if (!context.quiet) {
-    std::vector<std::vector<std::string>> shares;
-    for (std::size_t i = 0; i < rows.size(); ++i) shares.push_back({fmt::format("{:.2f} %", 100.0 * map.share(static_cast<int>(i)))});
-    fmt::print(stderr, "{}", attractor_text(rows, s.forced, {"share"}, shares));
-    fmt::print(stderr, "{} starts, {} integrated in {:.1f} s ({:.0f} per second); {} checked again, {} of them went elsewhere\n", map.cell.size(),
-               map.integrated, seconds, static_cast<double>(map.integrated) / seconds, map.checked, map.disagreed);
-  }
+  report(context.report, rows, map, s, seconds);
+  std::vector<std::vector<std::string>> shares;
+  for (std::size_t i = 0; i < rows.size(); ++i) shares.push_back({fmt::format("{:.2f} %", 100.0 * map.share(static_cast<int>(i)))});
+  context.print(attractor_text(rows, s.forced, {"share"}, shares));
+  context.print(fmt::format("{} starts, {} integrated in {:.1f} s ({:.0f} per second); {} checked again, {} of them went elsewhere\n",
+                            map.cell.size(), map.integrated, seconds, static_cast<double>(map.integrated) / seconds, map.checked, map.disagreed));
   return finish(file, context, unsettled == 0 && !rows.empty() ? ExitStatus::ok : ExitStatus::numerical_failure);
 }
 

@@ -20,27 +20,37 @@ using continuation::criticality;
 using continuation::EventType;
 using continuation::SpecialPoint;
 
-std::string json_number(double x) { return std::isfinite(x) ? fmt::format("{:.17g}", x) : "null"; }
-
-std::string json_text(const std::string& s) {
-  std::string out = "\"";
-  for (char c : s) {
-    if (c == '"' || c == '\\') out += '\\';
-    out += c;
-  }
-  return out + "\"";
-}
+bool has_critical_frequency(const SpecialPoint& s) { return s.type == EventType::hopf || s.type == EventType::torus; }
 
 std::string ends(const Branch& b) { return fmt::format("{}, {}", to_string(b.start_reason), to_string(b.stop_reason)); }
 
 }  // namespace
 
 bool is_own_column(const std::string& name) {
-  static const std::set<std::string> own = {
-      "branch",          "label",          "type",       "subtype",   "criticality",       "point",         "period",
-      "unstable_before", "unstable_after", "n_unstable", "frequency", "coefficient",       "arclength",     "residual",
-      "bracket_lower",   "bracket_upper",  "bracket",    "step",      "newton_iterations", "stable_before", "stable_after",
-      "curve",           "stable"};
+  static const std::set<std::string> own = {"branch",
+                                            "label",
+                                            "type",
+                                            "subtype",
+                                            "criticality",
+                                            "point",
+                                            "period",
+                                            "unstable_before",
+                                            "unstable_after",
+                                            "n_unstable",
+                                            "frequency",
+                                            "coefficient",
+                                            "arclength",
+                                            "residual",
+                                            "bracket_lower",
+                                            "bracket_upper",
+                                            "bracket",
+                                            "step",
+                                            "newton_iterations",
+                                            "stable_before",
+                                            "stable_after",
+                                            "curve",
+                                            "stable",
+                                            "critical_frequency"};
   static const std::regex eigenvalue("(eig|mu)[0-9]+_(re|im)");
   return own.contains(name) || std::regex_match(name, eigenvalue);
 }
@@ -68,7 +78,9 @@ void BranchOutput::write_branch(ResultFile& file, const Branch& b) const {
     table.push_back(std::move(c));
   };
   add(parameter, parameter_unit, "continuation parameter", [&](int i) { return b.parameter(i); });
-  for (const auto& column : columns) add(column.name, column.unit, column.description, [&](int i) { return column.value(b.u(i)); });
+  for (const auto& column : columns) add(column.name, column.unit, column.description, [](int) { return 0.0; });
+  for (int i = 0; i < n; ++i)  // point by point: columns share what they compute of a point
+    for (std::size_t k = 0; k < columns.size(); ++k) table[k + 1].values[static_cast<std::size_t>(i)] = columns[k].value(b.u(i));
   add("n_unstable", "-", "number of unstable directions; 0 is stable", [&](int i) { return b.n_unstable(i); });
   if (b.has_spectrum())
     for (int k = 0; k < b.spectrum_size(); ++k) {
@@ -127,8 +139,9 @@ void put_special_points(ResultFile& file, const BranchOutput& out, std::span<con
   add("period", "-", "of the motion in excitation periods, 0 for equilibria", [&](const SpecialPoint& s) { return period_at(s.u); });
   add("unstable_before", "-", "unstable directions before, along the branch", [](const SpecialPoint& s) { return s.unstable_before; });
   add("unstable_after", "-", "unstable directions after", [](const SpecialPoint& s) { return s.unstable_after; });
-  add("frequency", "rad/s", "Hopf, torus: of the motion that is born, in the slow time or beside the excitation",
-      [](const SpecialPoint& s) { return s.frequency; });
+  const char* critical = "Hopf, torus: of the motion that is born, in the slow time or beside the excitation";
+  if (!has_column("frequency")) add("frequency", "rad/s", critical, [](const SpecialPoint& s) { return s.frequency; });
+  add("critical_frequency", "rad/s", critical, [](const SpecialPoint& s) { return s.frequency; });
   add("coefficient", "-", "normal-form coefficient; NaN if not computed",
       [](const SpecialPoint& s) { return s.has_coefficient ? s.coefficient : std::nan(""); });
   add("arclength", "-", "along the branch", [](const SpecialPoint& s) { return s.arclength; });
@@ -143,28 +156,36 @@ void put_special_points(ResultFile& file, const BranchOutput& out, std::span<con
 
 }  // namespace
 
-std::string BranchOutput::json(const std::vector<Branch>& branches) const {
-  std::string points, summary;
-  for (const auto& b : branches) {
-    for (std::size_t i = 0; i < b.special.size(); ++i) {
-      const auto& s = b.special[i];
-      std::string o = fmt::format(R"({{"branch": {}, "label": {}, "type": "{}", "subtype": {}, "{}": {}, "period": {})", json_text(b.name),
-                                  json_text(label(b, i)), to_string(s.type), json_text(s.subtype), parameter, json_number(s.u[s.u.size() - 1]),
-                                  json_number(period_at(s.u)));
-      o += fmt::format(R"(, "stable_before": {}, "stable_after": {}, "unstable_before": {}, "unstable_after": {})", s.stable_before(),
-                       s.stable_after(), s.unstable_before, s.unstable_after);
-      for (const auto& column : columns) o += fmt::format(R"(, "{}": {})", column.name, json_number(column.value(s.u)));
-      if (s.type == EventType::hopf || s.type == EventType::torus) o += fmt::format(R"(, "frequency": {})", json_number(s.frequency));
-      if (s.has_coefficient) o += fmt::format(R"(, "coefficient": {})", json_number(s.coefficient));
-      if (const std::string how = criticality(s); !how.empty()) o += fmt::format(R"(, "criticality": "{}")", how);
-      o += fmt::format(R"(, "residual": {}, "bracket": [{}, {}]}})", json_number(s.residual), json_number(s.bracket[0]), json_number(s.bracket[1]));
-      points += (points.empty() ? "\n    " : ",\n    ") + o;
-    }
-    summary += fmt::format(R"({}    {{"name": {}, "born_at": {}, "points": {}, "start_reason": "{}", "stop_reason": "{}", "isola": {}}})",
-                           summary.empty() ? "\n" : ",\n", json_text(b.name), json_text(b.born_at), b.points(), to_string(b.start_reason),
-                           to_string(b.stop_reason), b.isola);
+bool BranchOutput::has_column(const std::string& name) const {
+  return std::any_of(columns.begin(), columns.end(), [&](const PointColumn& c) { return c.name == name; });
+}
+
+Json BranchOutput::json_of(const Branch& b, std::size_t special) const {
+  const SpecialPoint& s = b.special[special];
+  Json o = Json::object();
+  o.put("branch", b.name).put("label", label(b, special)).put("type", to_string(s.type)).put("subtype", s.subtype);
+  o.put(parameter, s.u[s.u.size() - 1]).put("period", period_at(s.u));
+  o.put("stable_before", s.stable_before()).put("stable_after", s.stable_after());
+  o.put("unstable_before", s.unstable_before).put("unstable_after", s.unstable_after);
+  for (const auto& column : columns) o.put(column.name, column.value(s.u));
+  if (has_critical_frequency(s)) {
+    if (!has_column("frequency")) o.put("frequency", s.frequency);
+    o.put("critical_frequency", s.frequency);
   }
-  return fmt::format("{{\n  \"special_points\": [{}\n  ],\n  \"branches\": [{}\n  ]\n}}\n", points, summary);
+  if (s.has_coefficient) o.put("coefficient", s.coefficient);
+  if (const std::string how = criticality(s); !how.empty()) o.put("criticality", how);
+  return std::move(o.put("residual", s.residual).put("bracket", Json::array(std::vector<double>{s.bracket[0], s.bracket[1]})));
+}
+
+void BranchOutput::report(Json& results, const std::vector<Branch>& branches) const {
+  Json points = Json::array(), summary = Json::array();
+  for (const auto& b : branches) {
+    for (std::size_t i = 0; i < b.special.size(); ++i) points.add(json_of(b, i));
+    Json o = Json::object();
+    o.put("name", b.name).put("born_at", b.born_at).put("points", b.points()).put("start_reason", to_string(b.start_reason));
+    summary.add(std::move(o.put("stop_reason", to_string(b.stop_reason)).put("isola", b.isola)));
+  }
+  results.put("special_points", std::move(points)).put("branches", std::move(summary));
 }
 
 std::string BranchOutput::text(const std::vector<Branch>& branches) const {
@@ -184,7 +205,10 @@ std::string BranchOutput::text(const std::vector<Branch>& branches) const {
       for (const auto* c : shown) out += fmt::format(" {:>14.8f}", c->value(s.u));
       const std::string how = criticality(s);
       out +=
-          fmt::format(" {:>9} {:>9.1e}{}{}\n", fmt::format("{} -> {}", s.unstable_before, s.unstable_after), s.residual, how.empty() ? "" : " ", how);
+          fmt::format(" {:>9} {:>9.1e}{}{}", fmt::format("{} -> {}", s.unstable_before, s.unstable_after), s.residual, how.empty() ? "" : " ", how);
+      if (s.has_coefficient) out += fmt::format(", coefficient {:.6g}", s.coefficient);
+      if (has_critical_frequency(s)) out += fmt::format(", frequency {:.8g} rad/s", s.frequency);
+      out += '\n';
     }
   for (const auto& b : branches)
     out += fmt::format("branch {:<7} {:>5} points{}, born at {}, ends: {}\n", b.name, b.points(), b.isola ? ", an isola" : "",

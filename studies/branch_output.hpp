@@ -4,6 +4,7 @@
 #include <functional>
 
 #include "continuation/network.hpp"
+#include "studies/json.hpp"
 #include "studies/result_file.hpp"
 
 namespace whirl::studies {
@@ -15,6 +16,8 @@ struct PointColumn {
   bool shown = false;  ///< in the printed table; amplitudes q.. in m always are
 };
 
+/// Hopf and torus points have a `critical_frequency`: Im of the critical eigenvalue, or that of the second motion beside the excitation [rad/s].
+/// `frequency` is the excitation's in Hz where the kind has a column of that name; where it has none, the critical frequency once more.
 struct BranchOutput {
   std::string parameter, parameter_unit;
   std::vector<PointColumn> columns;            ///< amplitudes, phases, derived numbers
@@ -26,11 +29,15 @@ struct BranchOutput {
   void write_branch(ResultFile& file, const continuation::Branch& branch) const;
   /// /special_points: one row each, all branches.
   void write_special_points(ResultFile& file, const std::vector<continuation::Branch>& branches) const;
-  /// {"special_points": [...], "branches": [...]}
-  std::string json(const std::vector<continuation::Branch>& branches) const;
+  /// "special_points": [...], "branches": [...]
+  void report(Json& results, const std::vector<continuation::Branch>& branches) const;
   /// The table printed at the end of a run.
   std::string text(const std::vector<continuation::Branch>& branches) const;
   double period_at(In u) const { return period_of ? period_of(u) : period; }
+
+ private:
+  Json json_of(const continuation::Branch& branch, std::size_t special) const;
+  bool has_column(const std::string& name) const;
 };
 
 /// "q1_h2", "z3_h0.5": harmonic k, in multiples of the excitation frequency, of a coordinate.

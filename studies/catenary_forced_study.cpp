@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <boost/math/tools/minima.hpp>
 #include <cmath>
@@ -28,6 +29,7 @@ struct Setup {
   double unit;                       // sqrt(g/a)
   std::vector<EndMotion> harmonics;  // of the base frequency, in a
   std::vector<double> sweep, at;     // rad/s
+  std::vector<double> places;        // arc length from the lower end [m]
 };
 
 Schema schema() {
@@ -67,6 +69,12 @@ Schema schema() {
          .default_value = std::vector<double>{},
          .lower = 0.0,
          .closed_lower = true});
+  s.add({.name = "response.places",
+         .unit = "m",
+         .description = "places along the cable, arc length from its lower end, at which motion and tension are tabulated against the frequency",
+         .default_value = std::vector<double>{},
+         .lower = 0.0,
+         .closed_lower = true});
   s.add_count("response.cable_points", "points along the cable in these tables", 201, 2, 100000);
   return s;
 }
@@ -99,7 +107,10 @@ std::vector<EndMotion> harmonics_of(const Configuration& c, const HangingCable& 
 
 Setup setup(const Configuration& c) {
   const HangingCable cable = hanging_cable_of(c);
-  Setup s{cable, core_of(cable), frequency_unit(cable), harmonics_of(c, cable), {}, c.numbers("response.at")};
+  Setup s{cable, core_of(cable), frequency_unit(cable), harmonics_of(c, cable), {}, c.numbers("response.at"), c.numbers("response.places")};
+  for (const double place : s.places)
+    if (place > cable.shape.length)
+      throw c.error("response.places", fmt::format("must lie within the cable's length {:.10g} m, got {:g}", cable.shape.length, place));
   const auto& range = c.numbers("response.range");
   if (!(range[0] < range[1])) throw c.error("response.range", "must be increasing");
   const auto points = static_cast<int>(c.integer("response.points"));
@@ -120,7 +131,6 @@ std::vector<std::string> check(const Configuration& c) { return hanging_cable_wa
 struct Resonance {
   double omega, decay;  // rad/s, 1/s
 };
-constexpr int most_resonances = 200;  // a plane
 
 // Rayleigh's estimate of how fast drag lets a mode decay [sqrt(g/a)].
 double decay_of(const CoreCable& c, const Mode& mode, bool lateral) {
@@ -131,14 +141,19 @@ double decay_of(const CoreCable& c, const Mode& mode, bool lateral) {
   return 0.5 * (c.eta1 * along + c.eta2 * across) / (along + across);
 }
 
+// All modes up to a frequency [sqrt(g/a)], and one beyond, as many as it takes: what the solver resolves it can list.
+ModeSet modes_up_to(const CoreCable& c, double omega, bool lateral, bool shapes) {
+  ModeSet set;
+  for (int count = 8;; count = std::min(2 * count, ModeOptions::most)) {
+    const ModeOptions options{.count = count, .shapes = shapes, .verify = false};
+    set = lateral ? out_of_plane_modes(c, options) : in_plane_modes(c, options);
+    if (set.modes.back().omega > omega || count == ModeOptions::most) return set;
+  }
+}
+
 // Natural frequencies within the sweep.
 std::vector<Resonance> natural(const Setup& s, bool lateral, RunContext& context) {
-  ModeSet set;
-  for (int count = 8;; count *= 2) {
-    const ModeOptions options{.count = std::min(count, most_resonances), .verify = false};
-    set = lateral ? out_of_plane_modes(s.core, options) : in_plane_modes(s.core, options);
-    if (set.modes.back().omega * s.unit > s.sweep.back() || count >= most_resonances) break;
-  }
+  const ModeSet set = modes_up_to(s.core, s.sweep.back() / s.unit, lateral, !lateral);
   if (!(set.modes.back().omega * s.unit > s.sweep.back()))
     context.warn(fmt::format("natural frequencies {} beyond the {}th, {:.6g} rad/s, are not listed", lateral ? "out of plane" : "in plane",
                              set.modes.size(), set.modes.back().omega * s.unit));
@@ -154,32 +169,51 @@ std::vector<Resonance> natural(const Setup& s, bool lateral, RunContext& context
 constexpr double closest = 3e-4;
 
 void refine(Setup& s, const std::vector<Resonance>& resonances) {
-  const double low = s.sweep.front(), high = s.sweep.back();
-  for (const auto& [omega, decay] : resonances) {
+  constexpr double farthest = 0.03;  // relative; and no farther than half way to the next resonance
+  const double first = s.sweep.front(), last = s.sweep.back();
+  for (std::size_t i = 0; i < resonances.size(); ++i) {
+    const auto& [omega, decay] = resonances[i];
+    const double low = i > 0 ? 0.5 * (omega + resonances[i - 1].omega) : first;
+    const double high = i + 1 < resonances.size() ? 0.5 * (omega + resonances[i + 1].omega) : last;
     const double width = decay > 0.0 ? std::min(closest, 0.25 * decay / omega) : closest;
     if (decay > 0.0 && width < closest) s.sweep.push_back(omega);
-    for (double d = width; d < 0.03; d *= d < closest ? 2.0 : 1.6)
+    for (double d = width; d < farthest; d *= d < closest ? 2.0 : 1.6)
       for (const double near : {omega * (1.0 - d), omega * (1.0 + d)})
         if (near > low && near < high) s.sweep.push_back(near);
   }
   std::sort(s.sweep.begin(), s.sweep.end());
 }
 
+// Tangential, normal, out of plane [a], tension [H] at a place.
+using AtPlace = std::array<Complex, 4>;
+
 struct Row {
   Peak T, U, V, W;
   TotalTension total;
   double T_lower, T_upper;
+  std::vector<AtPlace> places;
 };
 
-Row row_of(const PeakFinder& peaks, const ForcedMotion& m) {
+double place_of(const Setup& s, double arc) {
+  return std::clamp(std::asinh(std::sinh(s.cable.shape.x1) + arc / s.cable.shape.a), s.cable.shape.x1, s.cable.shape.x2);
+}
+
+AtPlace at_place(const ForcedMotion& m, double x) {
+  return {m.in_plane.at(x, Quantity::U), m.in_plane.at(x, Quantity::V), m.lateral.at(x, Quantity::W), m.in_plane.at(x, Quantity::T)};
+}
+
+Row row_of(const Setup& s, const PeakFinder& peaks, const ForcedMotion& m) {
   const auto& f = m.in_plane;
+  std::vector<AtPlace> places;
+  for (const double arc : s.places) places.push_back(at_place(m, place_of(s, arc)));
   return {peaks.largest(f, Quantity::T),
           peaks.largest(f, Quantity::U),
           peaks.largest(f, Quantity::V),
           peaks.largest(m.lateral, Quantity::W),
           peaks.total_tension(f),
           std::abs(f.at(f.coordinate.x1(), Quantity::T)),
-          std::abs(f.at(f.coordinate.x2(), Quantity::T))};
+          std::abs(f.at(f.coordinate.x2(), Quantity::T)),
+          std::move(places)};
 }
 
 double arc(const Setup& s, double x) { return s.cable.shape.a * (std::sinh(x) - std::sinh(s.cable.shape.x1)); }
@@ -190,7 +224,7 @@ std::vector<Row> write_resonance(ResultFile& file, const Setup& s, const ForcedS
   std::vector<Row> rows(s.sweep.size());
   std::atomic<std::size_t> done{0};
   parallel_for(rows.size(), [&](std::size_t i) {
-    if (!interrupted) rows[i] = row_of(peaks, solver.at(s.sweep[i] / s.unit, s.harmonics[0]));
+    if (!interrupted) rows[i] = row_of(s, peaks, solver.at(s.sweep[i] / s.unit, s.harmonics[0]));
     context.progress.show(fmt::format("{} of {} frequencies", ++done, rows.size()));
   });
   const double a = s.cable.shape.a, H = horizontal_tension(s.cable);
@@ -220,6 +254,25 @@ std::vector<Row> write_resonance(ResultFile& file, const Setup& s, const ForcedS
 void add_amplitude(std::vector<Column>& t, const char* name, const char* unit, const char* description, const Eigen::VectorXcd& v) {
   t.push_back({name, unit, fmt::format("amplitude of {}", description), to_std(v.cwiseAbs())});
   t.push_back({fmt::format("{}_phase", name), "rad", "phase: amplitude cos(omega t + phase)", to_std(v.array().arg().matrix())});
+}
+
+// "U", "V", "W", "tension": amplitudes and phases at each place over the sweep.
+void write_places(ResultFile& file, const Setup& s, const std::vector<Row>& rows) {
+  static constexpr std::pair<const char*, const char*> quantities[] = {
+      {"U", "tangential displacement"}, {"V", "normal displacement"}, {"W", "displacement out of plane"}, {"tension", "dynamic tension"}};
+  const double a = s.cable.shape.a, H = horizontal_tension(s.cable);
+  for (std::size_t j = 0; j < s.places.size(); ++j) {
+    std::vector<Column> t{{"omega", "rad/s", "frequency of the end motion", s.sweep}};
+    for (std::size_t q = 0; q < 4; ++q) {
+      Eigen::VectorXcd values(static_cast<Eigen::Index>(rows.size()));
+      for (std::size_t i = 0; i < rows.size(); ++i)
+        values[static_cast<Eigen::Index>(i)] = (q < 3 ? a : H) * (rows[i].places.empty() ? Complex(std::nan("")) : rows[i].places[j][q]);
+      add_amplitude(t, quantities[q].first, q < 3 ? "m" : "N", quantities[q].second, values);
+    }
+    const std::string group = fmt::format("/places/place{}", j + 1);
+    file.table(group, t);
+    file.attribute(group, "s", s.places[j]);
+  }
 }
 
 // The motion along the cable at one base frequency: each harmonic, and what they add up to over a period. The least total tension [N].
@@ -310,17 +363,8 @@ std::optional<double> unbounded_at(const CoreCable& c, const EndMotion& e, doubl
   const auto meets = [&](const ModeSet& set) {
     return std::any_of(set.modes.begin(), set.modes.end(), [&](const Mode& m) { return std::abs(omega / m.omega - 1.0) < 1e-8; });
   };
-  const auto modes_up_to = [&](bool lateral) {
-    ModeSet set;
-    for (int count = 8; count <= 2 * most_resonances; count *= 2) {
-      const ModeOptions options{.count = count, .shapes = false, .verify = false};
-      set = lateral ? out_of_plane_modes(c, options) : in_plane_modes(c, options);
-      if (set.modes.back().omega > omega) break;
-    }
-    return set;
-  };
-  if (moves_in_plane(e) && c.eta1 == 0.0 && c.eta2 == 0.0 && meets(modes_up_to(false))) return omega;
-  if (moves_laterally(e) && c.eta3 == 0.0 && meets(modes_up_to(true))) return omega;
+  if (moves_in_plane(e) && c.eta1 == 0.0 && c.eta2 == 0.0 && meets(modes_up_to(c, omega, false, false))) return omega;
+  if (moves_laterally(e) && c.eta3 == 0.0 && meets(modes_up_to(c, omega, true, false))) return omega;
   return std::nullopt;
 }
 
@@ -328,6 +372,76 @@ std::string list(const std::vector<Resonance>& resonances) {
   std::string out;
   for (const auto& r : resonances) out += fmt::format("{}{:.8g}", out.empty() ? "" : ", ", r.omega);
   return out.empty() ? "none in the range" : out;
+}
+
+// The largest dynamic tension and the largest displacement out of plane; `largest` is the one of the motion asked for.
+void report_largest(RunContext& context, const Setup& s, const Largest& T, const Largest& W, bool bounded) {
+  const EndMotion& first = s.harmonics[0];
+  const bool in_plane = moves_in_plane(first), lateral = moves_laterally(first);
+  const double H = horizontal_tension(s.cable), a = s.cable.shape.a;
+  const auto told = [&](const Largest& largest) {
+    Json o = Json::object();
+    o.put("omega", largest.omega).put("s", arc(s, largest.peak.x)).put("bounded", bounded);
+    return o;
+  };
+  Json either = told(in_plane || !lateral ? T : W);
+  either.put("tension", H * T.peak.value);
+  if (lateral) either.put("W", a * W.peak.value);
+  context.report.put("largest", std::move(either));
+  if (in_plane) context.report.put("largest_tension", std::move(told(T).put("tension", H * T.peak.value)));
+  if (lateral) context.report.put("largest_out_of_plane", std::move(told(W).put("W", a * W.peak.value)));
+  const char* scope = bounded ? "" : " of the frequencies computed";
+  if (in_plane)
+    context.print(fmt::format("largest dynamic tension{} {:.6g} N at {:.10g} rad/s, {:.4g} m from the lower end; static at the upper end {:.6g} N\n",
+                              scope, H * T.peak.value, T.omega, arc(s, T.peak.x), H * std::cosh(s.cable.shape.x2)));
+  if (lateral)
+    context.print(fmt::format("largest displacement out of plane{} {:.6g} m at {:.10g} rad/s, {:.4g} m from the lower end\n", scope, a * W.peak.value,
+                              W.omega, arc(s, W.peak.x)));
+}
+
+// The first harmonic at the frequencies of response.at: largest values along the cable and what happens at each of the places.
+void report_at(RunContext& context, const Setup& s, const ForcedSolver& solver, const PeakFinder& peaks) {
+  const EndMotion& first = s.harmonics[0];
+  const double H = horizontal_tension(s.cable), a = s.cable.shape.a;
+  Json rows = Json::array();
+  std::string text;
+  for (const double w : s.at) {
+    const ForcedMotion m = solver.at(w / s.unit, first);
+    const Peak T = peaks.largest(m.in_plane, Quantity::T), W = peaks.largest(m.lateral, Quantity::W);
+    Json o = Json::object(), places = Json::array();
+    o.put("omega", w).put("tension", H * T.value).put("s", arc(s, T.x)).put("W", a * W.value).put("W_s", arc(s, W.x));
+    if (moves_in_plane(first))
+      text += fmt::format("at {:.10g} rad/s: dynamic tension up to {:.8g} N, {:.4g} m from the lower end\n", w, H * T.value, arc(s, T.x));
+    if (moves_laterally(first))
+      text += fmt::format("at {:.10g} rad/s: displacement out of plane up to {:.8g} m, {:.4g} m from the lower end\n", w, a * W.value, arc(s, W.x));
+    for (const double place : s.places) {
+      const auto [U, V, lateral, tension] = at_place(m, place_of(s, place));
+      Json p = Json::object();
+      p.put("s", place).put("U", a * std::abs(U)).put("V", a * std::abs(V)).put("W", a * std::abs(lateral)).put("tension", H * std::abs(tension));
+      places.add(std::move(p));
+      text += fmt::format("  at {:.6g} m: along {:.8g} m, across {:.8g} m, out of plane {:.8g} m, dynamic tension {:.8g} N\n", place, a * std::abs(U),
+                          a * std::abs(V), a * std::abs(lateral), H * std::abs(tension));
+    }
+    rows.add(std::move(o.put("places", std::move(places))));
+  }
+  context.report.put("at", std::move(rows));
+  context.print(text);
+}
+
+void report(RunContext& context, const Setup& s, const ForcedSolver& solver, const PeakFinder& peaks, const std::vector<Resonance> resonances[2],
+            const Largest& T, const Largest& W, bool bounded, std::size_t points) {
+  const char* keys[] = {"natural", "natural_out_of_plane"};
+  const bool moves[] = {moves_in_plane(s.harmonics[0]), moves_laterally(s.harmonics[0])};
+  for (const int lateral : {0, 1}) {
+    Json omegas = Json::array();
+    for (const auto& r : resonances[lateral]) omegas.add(r.omega);
+    context.report.put(keys[lateral], std::move(omegas));
+    if (moves[lateral])
+      context.print(fmt::format("natural frequencies {} [rad/s]: {}\n", lateral == 0 ? "in plane" : "out of plane", list(resonances[lateral])));
+  }
+  report_largest(context, s, T, W, bounded);
+  report_at(context, s, solver, peaks);
+  context.report.put("points", points);
 }
 
 ExitStatus run(const Configuration& c, RunContext& context) {
@@ -346,11 +460,12 @@ ExitStatus run(const Configuration& c, RunContext& context) {
   const PeakFinder peaks(solver.mesh());
   ResultFile file(context.output);
   write_study(file, c);
-  write_hanging_cable(file, s.cable);
+  write_hanging_cable(file, context, s.cable);
   write_natural(file, resonances);
   std::vector<std::string> failures;
   if (!in_plane && !lateral) context.warn("the first harmonic of the end motion is zero, and so is the resonance diagram, which shows it alone");
   const auto rows = write_resonance(file, s, solver, context);
+  write_places(file, s, rows);
   file.flush();
   context.progress.clear();
   std::size_t slack = 0;
@@ -364,7 +479,6 @@ ExitStatus run(const Configuration& c, RunContext& context) {
   const bool bounded =
       (!in_plane || s.core.eta1 > 0.0 || s.core.eta2 > 0.0 || resonances[0].empty()) && (!lateral || s.core.eta3 > 0.0 || resonances[1].empty());
   if (!bounded) context.warn("without drag motion is unbounded at the natural frequencies: largest values are those of the frequencies computed");
-  const double H = horizontal_tension(s.cable), a = s.cable.shape.a;
   const Largest T = largest_of(s, rows, {s, solver, peaks, bounded, false}), W = largest_of(s, rows, {s, solver, peaks, bounded, true});
   for (const double w : s.at) {
     if (interrupted) break;
@@ -375,32 +489,7 @@ ExitStatus run(const Configuration& c, RunContext& context) {
         failures.push_back(
             fmt::format("{:.10g} rad/s is a natural frequency without drag: motion is unbounded, what is written is rounding", *omega * s.unit));
   }
-  if (context.json) {
-    std::string omegas;
-    for (const auto& r : resonances[0]) omegas += fmt::format("{}{}", omegas.empty() ? "" : ", ", r.omega);
-    fmt::print(
-        "{{\n  \"largest\": {{\"omega\": {:.17g}, \"tension\": {:.17g}, \"s\": {:.17g}, \"bounded\": {}}},\n  \"natural\": [{}],\n  "
-        "\"points\": {}\n}}\n",
-        T.omega, H * T.peak.value, arc(s, T.peak.x), bounded, omegas, rows.size());
-  }
-  if (!context.quiet) {
-    const char* scope = bounded ? "" : " of the frequencies computed";
-    if (in_plane) {
-      fmt::print(stderr, "natural frequencies in plane [rad/s]: {}\n", list(resonances[0]));
-      fmt::print(stderr, "largest dynamic tension{} {:.6g} N at {:.10g} rad/s, {:.4g} m from the lower end; static at the upper end {:.6g} N\n",
-                 scope, H * T.peak.value, T.omega, arc(s, T.peak.x), H * std::cosh(s.cable.shape.x2));
-    }
-    if (lateral) {
-      fmt::print(stderr, "natural frequencies out of plane [rad/s]: {}\n", list(resonances[1]));
-      fmt::print(stderr, "largest displacement out of plane{} {:.6g} m at {:.10g} rad/s, {:.4g} m from the lower end\n", scope, a * W.peak.value,
-                 W.omega, arc(s, W.peak.x));
-    }
-    for (const double w : s.at) {
-      const ForcedMotion m = solver.at(w / s.unit, first);
-      const Peak here = peaks.largest(m.in_plane, Quantity::T);
-      fmt::print(stderr, "at {:.10g} rad/s: dynamic tension up to {:.8g} N, {:.4g} m from the lower end\n", w, H * here.value, arc(s, here.x));
-    }
-  }
+  report(context, s, solver, peaks, resonances, T, W, bounded, rows.size());
   return finish_tables(file, context, failures);
 }
 

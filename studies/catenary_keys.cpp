@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <numbers>
 
 namespace whirl::studies {
 
@@ -119,28 +120,40 @@ std::vector<std::string> hanging_cable_warnings(const HangingCable& cable) {
   return warnings;
 }
 
-void write_hanging_cable(ResultFile& file, const HangingCable& cable) {
+Numbers hanging_cable_numbers(const HangingCable& cable) {
   const Geometry& g = cable.shape;
   const CoreCable core = core_of(cable);
   const double H = horizontal_tension(cable);
-  const auto put = [&](const char* name, double value, const char* unit, const char* description) {
-    file.scalar("/cable", name, value, unit, description);
-  };
-  put("span", g.span, "m", "b");
-  put("height_difference", g.height, "m", "h");
-  put("length", g.length, "m", "l");
-  put("sag", g.sag, "m", "f, vertical, at half the span");
-  put("sag_parameter", g.sag_parameter(), "-", "b / sqrt(l^2 - h^2)");
-  put("a", g.a, "m", "catenary parameter H/(mu g)");
-  put("half_width", g.m, "-", "b/2a");
-  put("xi_lower", xi_of(g.x1), "-", "sgn(x) (cosh x - 1) at the lower end");
-  put("xi_upper", xi_of(g.x2), "-", "the same at the upper end");
-  put("horizontal_tension", H, "N", "H");
-  put("lower_tension", H * std::cosh(g.x1), "N", "static tension at the lower end");
-  put("upper_tension", H * std::cosh(g.x2), "N", "static tension at the upper end");
-  put("flexibility", core.kappa, "-", "kappa = H/EA");
-  put("frequency_unit", frequency_unit(cable), "rad/s", "sqrt(g/a)");
-  if (core.kappa > 0.0) put("irvine_lambda2", irvine_lambda2(g, core.kappa), "-", "(b/a)^2 (b/Le) EA/H");
+  const auto degrees = [](double slope) { return std::atan(slope) * 180.0 / std::numbers::pi; };
+  Numbers all{{"span", "m", "b", g.span},
+              {"height_difference", "m", "h", g.height},
+              {"length", "m", "l", g.length},
+              {"sag", "m", "f, vertical, at half the span", g.sag},
+              {"sag_parameter", "-", "b / sqrt(l^2 - h^2)", g.sag_parameter()},
+              {"a", "m", "catenary parameter H/(mu g)", g.a},
+              {"half_width", "-", "b/2a", g.m},
+              {"xi_lower", "-", "sgn(x) (cosh x - 1) at the lower end", xi_of(g.x1)},
+              {"xi_upper", "-", "the same at the upper end", xi_of(g.x2)},
+              {"lower_slope", "-", "dy/dx at the lower end", std::sinh(g.x1)},
+              {"upper_slope", "-", "dy/dx at the upper end", std::sinh(g.x2)},
+              {"lower_slope_deg", "deg", "angle to the horizontal at the lower end", degrees(std::sinh(g.x1))},
+              {"upper_slope_deg", "deg", "the same at the upper end", degrees(std::sinh(g.x2))},
+              {"horizontal_tension", "N", "H", H},
+              {"lower_tension", "N", "static tension at the lower end", H * std::cosh(g.x1)},
+              {"upper_tension", "N", "static tension at the upper end", H * std::cosh(g.x2)},
+              {"lower_vertical_tension", "N", "its vertical part, H dy/dx, at the lower end", H * std::sinh(g.x1)},
+              {"upper_vertical_tension", "N", "the same at the upper end", H * std::sinh(g.x2)},
+              {"flexibility", "-", "kappa = H/EA", core.kappa},
+              {"frequency_unit", "rad/s", "sqrt(g/a)", frequency_unit(cable)}};
+  if (core.kappa > 0.0) all.push_back({"irvine_lambda2", "-", "(b/a)^2 (b/Le) EA/H", irvine_lambda2(g, core.kappa)});
+  return all;
+}
+
+void write_hanging_cable(ResultFile& file, RunContext& context, const HangingCable& cable) {
+  const Numbers numbers = hanging_cable_numbers(cable);
+  write_numbers(file, "/cable", numbers);
+  context.report.put("cable", numbers_json(numbers));
+  context.print(numbers_text(numbers) + "\n");
 }
 
 std::vector<double> to_std(const Eigen::Ref<const Vector>& v) { return {v.begin(), v.end()}; }

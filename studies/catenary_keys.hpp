@@ -3,6 +3,7 @@
 
 #include "models/catenary/cable.hpp"
 #include "studies/configuration.hpp"
+#include "studies/numbers.hpp"
 #include "studies/result_file.hpp"
 #include "studies/run_context.hpp"
 
@@ -14,8 +15,10 @@ void add_hanging_cable_keys(Schema& schema, bool drag);
 models::catenary::HangingCable hanging_cable_of(const Configuration& c);
 /// What the inextensible catenary leaves out of this cable.
 std::vector<std::string> hanging_cable_warnings(const models::catenary::HangingCable& cable);
-/// /cable: geometry, tension, dimensionless numbers.
-void write_hanging_cable(ResultFile& file, const models::catenary::HangingCable& cable);
+/// Geometry, tensions, end slopes, dimensionless numbers.
+Numbers hanging_cable_numbers(const models::catenary::HangingCable& cable);
+/// These into /cable, the report and the printed table.
+void write_hanging_cable(ResultFile& file, RunContext& context, const models::catenary::HangingCable& cable);
 
 /// Points along the cable as columns s, x, y in metres from the lower end; x in units of a from the apex for the solvers.
 struct Along {

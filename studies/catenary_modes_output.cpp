@@ -72,6 +72,26 @@ std::string damped_text(const DampedSet& set, double unit) {
   return out;
 }
 
+// The model's frequencies and coefficients: in the report, and as the lines of a study file on screen.
+static void report_reduced(RunContext& context, const models::ModalModel& m, const ReducedModel& r, const HangingCable& cable) {
+  const double a = cable.shape.a, left_out = r.first_left_out * frequency_unit(cable);
+  std::vector<double> curvature;
+  for (int i = 0; i < m.size(); ++i) curvature.push_back(backbone_curvature(r, i) / (a * a));
+  Json terms = Json::array();
+  for (const auto& t : m.terms) {
+    Json powers = Json::array(), o = Json::object();
+    for (const int power : t.powers) powers.add(power);
+    terms.add(std::move(o.put("equation", t.equation + 1).put("coefficient", t.coefficient).put("powers", std::move(powers))));
+  }
+  Json model = Json::object();
+  model.put("frequency", Json::array(m.frequency)).put("damping", Json::array(m.damping)).put("curvature", Json::array(curvature));
+  context.report.put("reduced", std::move(model.put("first_left_out", left_out).put("terms", std::move(terms))));
+  context.print(
+      fmt::format("nonlinear model of {} modes: {} terms; lowest frequency in plane without inertia {:.6g} rad/s; relative change of frequency per "
+                  "m^2: {:.4g}\n{}",
+                  m.size(), m.terms.size(), left_out, fmt::join(curvature, " "), modal_model_text(m, r)));
+}
+
 void write_reduced(ResultFile& file, const HangingCable& cable, const ReducedOptions& o, RunContext& context) {
   if (o.out_of_plane + o.in_plane == 0) return;
   CoreCable core = core_of(cable);
@@ -97,13 +117,7 @@ void write_reduced(ResultFile& file, const HangingCable& cable, const ReducedOpt
   file.table("/reduced", t);
   file.text("/reduced", "modal_model", modal_model_text(m, r));
   file.attribute("/reduced", "first_left_out", r.first_left_out * frequency_unit(cable));
-  if (!context.quiet) {
-    fmt::print(stderr,
-               "nonlinear model of {} modes: {} terms; lowest frequency in plane without inertia {:.6g} rad/s; relative change of frequency per m^2:",
-               m.size(), m.terms.size(), r.first_left_out * frequency_unit(cable));
-    for (int i = 0; i < m.size(); ++i) fmt::print(stderr, " {:.4g}", backbone_curvature(r, i) / (cable.shape.a * cable.shape.a));
-    fmt::print(stderr, "\n");
-  }
+  report_reduced(context, m, r, cable);
 }
 
 }  // namespace whirl::studies

@@ -93,15 +93,21 @@ std::vector<std::string> check(const Configuration& c) {
 
 const char* plane_name(bool lateral) { return lateral ? "out_of_plane" : "in_plane"; }
 
+// How a frequency out of plane depends on the amplitude.
+struct Swing {
+  double curvature, detuning;  // 1/m^2, -
+};
+
 struct Found {
   ModeSet set;
   std::vector<std::complex<double>> lambda;  // with drag, in sqrt(g/a), one a mode; nan for a mode that drag leaves no likeness of
   DampedSet damped;                          // in plane
+  std::vector<Swing> swings;                 // out of plane, one a mode; nan beyond the eighth
 };
 
 Found find(const CoreCable& core, int count, bool lateral) {
   const ModeOptions options{.count = count};
-  Found f{lateral ? out_of_plane_modes(core, options) : in_plane_modes(core, options), {}, {}};
+  Found f{lateral ? out_of_plane_modes(core, options) : in_plane_modes(core, options), {}, {}, {}};
   if (lateral && core.eta3 > 0.0)
     for (const auto& mode : f.set.modes) f.lambda.push_back(damped_root(mode.omega, core.eta3));
   if (!lateral && (core.eta1 > 0.0 || core.eta2 > 0.0)) {
@@ -138,19 +144,27 @@ std::vector<Column> mode_columns(const Found& found, double unit) {
   return t;
 }
 
-// How the frequencies out of plane depend on the amplitude.
-void add_backbone(std::vector<Column>& t, const HangingCable& cable, CoreCable core, int count) {
+std::vector<Swing> swings_of(const HangingCable& cable, CoreCable core, int count) {
+  constexpr int highest = 8;                // mode of which it is asked
   core.kappa = std::max(core.kappa, 1e-7);  // stands for an inextensible cable
+  const double a = cable.shape.a;
+  std::vector<Swing> swings;
+  for (int mode = 1; mode <= count; ++mode) {
+    Backbone b;
+    if (mode <= highest) b = lateral_backbone(core, mode);
+    else b.curvature = b.detuning = std::nan("");
+    swings.push_back({b.curvature / (a * a), b.detuning});
+  }
+  return swings;
+}
+
+void add_backbone(std::vector<Column>& t, const std::vector<Swing>& swings) {
   Column curvature{"curvature", "1/m^2", "relative change of the frequency per square of the largest displacement, to second order", {}};
   Column detuning{
       "detuning", "-", "relative distance of twice the frequency from the nearest one in plane; small: internal resonance, curvature fails", {}};
-  const double a = cable.shape.a;
-  for (int mode = 1; mode <= count; ++mode) {
-    Backbone b;
-    if (mode <= 8) b = lateral_backbone(core, mode);
-    else b.curvature = b.detuning = std::nan("");
-    curvature.values.push_back(b.curvature / (a * a));
-    detuning.values.push_back(b.detuning);
+  for (const Swing& s : swings) {
+    curvature.values.push_back(s.curvature);
+    detuning.values.push_back(s.detuning);
   }
   t.push_back(curvature);
   t.push_back(detuning);
@@ -225,9 +239,9 @@ void write_series(ResultFile& file, const HangingCable& cable, int count, bool l
   if (s.refused > 0)
     context.warn(fmt::format("series {}: the {} highest modes are refused, their sums lose more than nine digits", plane_name(lateral), s.refused));
   file.table(fmt::format("/series/{}", plane_name(lateral)), t);
-  if (!context.quiet && s.agrees() && !s.omega.empty())
-    fmt::print(stderr, "series {}: {} modes, {} terms, largest difference {:.1e}, {:.1f} digits lost at most\n", plane_name(lateral), s.omega.size(),
-               s.terms, s.worst_difference(), *std::max_element(s.digits_lost.begin(), s.digits_lost.end()));
+  if (s.agrees() && !s.omega.empty())
+    context.print(fmt::format("series {}: {} modes, {} terms, largest difference {:.1e}, {:.1f} digits lost at most\n", plane_name(lateral),
+                              s.omega.size(), s.terms, s.worst_difference(), *std::max_element(s.digits_lost.begin(), s.digits_lost.end())));
 }
 
 std::string text(const Found& found, double unit, bool lateral) {
@@ -235,24 +249,32 @@ std::string text(const Found& found, double unit, bool lateral) {
                                 "frequency [Hz]", "omega/sqrt(g/a)", "odd", "elastic", "kind");
   for (std::size_t i = 0; i < found.set.modes.size(); ++i) {
     const Mode& m = found.set.modes[i];
-    out += fmt::format("{:<13} {:>4} {:>18.11g} {:>16.9g} {:>16.11g} {:>9.4f} {:>9.4f}  {}\n", "", i + 1, m.omega * unit,
+    out += fmt::format("{:<13} {:>4} {:>18.11g} {:>16.9g} {:>16.11g} {:>9.4f} {:>9.4f}  {}", "", i + 1, m.omega * unit,
                        m.omega * unit / (2.0 * std::numbers::pi), m.omega, m.odd_share, m.elastic_share, to_string(m.kind));
+    if (i < found.swings.size() && std::isfinite(found.swings[i].curvature))
+      out += fmt::format(", curvature {:.6g} 1/m^2", found.swings[i].curvature);
+    out += '\n';
   }
   return out + fmt::format("{:<13} {} below {:.8g} rad/s by inertia, {} listed{}\n", "", found.set.counted, found.set.counted_below * unit,
                            found.set.expected, found.set.complete() ? ": none is missing" : "");
 }
 
-std::string json(const Found found[2], double unit) {
-  std::string rows;
+void report(Json& results, const Found found[2], double unit) {
+  Json rows = Json::array();
   for (int lateral = 0; lateral < 2; ++lateral)
     for (std::size_t i = 0; i < found[lateral].set.modes.size(); ++i) {
       const Mode& m = found[lateral].set.modes[i];
-      rows += fmt::format(
-          R"({}    {{"plane": "{}", "mode": {}, "omega": {:.17g}, "frequency": {:.17g}, "omega_ratio": {:.17g}, "kind": "{}", "odd_share": {:.6g}}})",
-          rows.empty() ? "\n" : ",\n", plane_name(lateral == 1), i + 1, m.omega * unit, m.omega * unit / (2.0 * std::numbers::pi), m.omega,
-          to_string(m.kind), m.odd_share);
+      Json o = Json::object();
+      o.put("plane", plane_name(lateral == 1)).put("mode", i + 1).put("omega", m.omega * unit);
+      o.put("frequency", m.omega * unit / (2.0 * std::numbers::pi)).put("omega_ratio", m.omega).put("kind", to_string(m.kind));
+      o.put("odd_share", m.odd_share).put("elastic_share", m.elastic_share);
+      if (const auto& lambda = found[lateral].lambda; !lambda.empty()) {
+        o.put("decay", -lambda[i].real() * unit).put("damped_omega", lambda[i].imag() * unit);
+      }
+      if (const auto& swings = found[lateral].swings; !swings.empty()) o.put("curvature", swings[i].curvature).put("detuning", swings[i].detuning);
+      rows.add(std::move(o));
     }
-  return fmt::format("{{\n  \"modes\": [{}\n  ],\n  \"complete\": {}\n}}\n", rows, found[0].set.complete() && found[1].set.complete());
+  results.put("modes", std::move(rows)).put("complete", found[0].set.complete() && found[1].set.complete());
 }
 
 ExitStatus run(const Configuration& c, RunContext& context) {
@@ -262,7 +284,7 @@ ExitStatus run(const Configuration& c, RunContext& context) {
   const double unit = frequency_unit(cable);
   ResultFile file(context.output);
   write_study(file, c);
-  write_hanging_cable(file, cable);
+  write_hanging_cable(file, context, cable);
   std::vector<std::string> failures;
   Found found[2];
   const int points = int(c.integer("modes.points"));
@@ -273,7 +295,10 @@ ExitStatus run(const Configuration& c, RunContext& context) {
     if (count == 0) continue;
     f = find(core, count, lateral);
     auto columns = mode_columns(f, unit);
-    if (lateral) add_backbone(columns, cable, core, count);
+    if (lateral) {
+      f.swings = swings_of(cable, core, count);
+      add_backbone(columns, f.swings);
+    }
     TextColumn kinds{"kind", "symmetric, antisymmetric or hybrid (5 to 95 % odd)", {}};
     for (const auto& mode : f.set.modes) kinds.values.emplace_back(to_string(mode.kind));
     const std::string group = fmt::format("/modes/{}", plane_name(lateral));
@@ -292,8 +317,8 @@ ExitStatus run(const Configuration& c, RunContext& context) {
                                      f.set.functions, f.set.tail));
     else if (!f.set.complete())
       failures.push_back(fmt::format("modes {} are not proved complete: {} listed, {} counted", plane_name(lateral), f.set.expected, f.set.counted));
-    if (!context.quiet) fmt::print(stderr, "{}", text(f, unit, lateral));
-    if (!context.quiet && !lateral) fmt::print(stderr, "{}", damped_text(f.damped, unit));
+    context.print(text(f, unit, lateral));
+    if (!lateral) context.print(damped_text(f.damped, unit));
     if (c.flag("series.compare")) write_series(file, cable, count, lateral, context, failures);
   }
   write_reduced(file, cable, reduced_options(c), context);
@@ -301,7 +326,7 @@ ExitStatus run(const Configuration& c, RunContext& context) {
   for (const double h : c.numbers("sweep.height_over_span"))
     for (const bool lateral : {false, true})
       if (!interrupted) write_sweep(file, c, h, lateral, failures);
-  if (context.json) fmt::print("{}", json(found, unit));
+  report(context.report, found, unit);
   return finish_tables(file, context, failures);
 }
 

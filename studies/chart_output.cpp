@@ -68,29 +68,30 @@ void ChartOutput::write_points(ResultFile& file, const std::string& path, const 
   file.table(path, table, {names, types, subtypes});
 }
 
-std::string ChartOutput::points_json(const std::vector<ChartCurve>& curves) const {
-  std::string points;
+Json ChartOutput::points_json(const std::vector<ChartCurve>& curves) const {
+  Json points = Json::array();
   for (const auto& of : curves)
     for (const auto& z : of.curve.special) {
       const auto n = z.u.size() - 2;
-      std::string state = z.subtype.empty() ? "" : fmt::format(R"(, "subtype": "{}")", z.subtype);
-      if (!held.empty()) state += fmt::format(R"(, "{}": {:.17g})", held, of.held);
+      Json o = Json::object();
+      o.put("curve", of.curve.name).put("type", z.type);
+      if (!z.subtype.empty()) o.put("subtype", z.subtype);
+      o.put(first, z.u[n]).put(second, z.u[n + 1]);
+      if (!held.empty()) o.put(held, of.held);
       for (const auto& c : of.columns)
-        if (const double x = c.value(of.point(z.u)); std::isfinite(x)) state += fmt::format(R"(, "{}": {:.17g})", c.name, x);
-      points += fmt::format(R"({}    {{"curve": "{}", "type": "{}", "{}": {:.17g}, "{}": {:.17g}{}, "residual": {:.3g}}})",
-                            points.empty() ? "\n" : ",\n", of.curve.name, z.type, first, z.u[n], second, z.u[n + 1], state, z.residual);
+        if (const double x = c.value(of.point(z.u)); std::isfinite(x)) o.put(c.name, x);
+      points.add(std::move(o.put("residual", z.residual)));
     }
   return points;
 }
 
-std::string ChartOutput::curves_json(const std::vector<ChartCurve>& curves) {
-  std::string summary;
+Json ChartOutput::curves_json(const std::vector<ChartCurve>& curves) {
+  Json summary = Json::array();
   for (const auto& of : curves) {
     const auto& c = of.curve;
-    summary += fmt::format(
-        R"({}    {{"name": "{}", "type": "{}", "subtype": "{}", "born_at": "{}", "points": {}, "start_reason": "{}", "stop_reason": "{}"}})",
-        summary.empty() ? "\n" : ",\n", c.name, to_string(c.type), c.subtype, c.born_at, c.u.cols(), to_string(c.start_reason),
-        to_string(c.stop_reason));
+    Json o = Json::object();
+    o.put("name", c.name).put("type", to_string(c.type)).put("subtype", c.subtype).put("born_at", c.born_at).put("points", c.u.cols());
+    summary.add(std::move(o.put("start_reason", to_string(c.start_reason)).put("stop_reason", to_string(c.stop_reason))));
   }
   return summary;
 }

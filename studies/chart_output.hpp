@@ -3,6 +3,7 @@
 
 #include "continuation/two_parameter.hpp"
 #include "studies/branch_output.hpp"
+#include "studies/json.hpp"
 
 namespace whirl::studies {
 
@@ -22,9 +23,9 @@ struct ChartOutput {
   void write_curve(ResultFile& file, const ChartCurve& curve) const;
   /// One row for each codimension-2 point of all curves.
   void write_points(ResultFile& file, const std::string& table, const std::vector<ChartCurve>& curves) const;
-  /// Entries of JSON lists: of the points, and of the curves.
-  std::string points_json(const std::vector<ChartCurve>& curves) const;
-  static std::string curves_json(const std::vector<ChartCurve>& curves);
+  /// The points, and the curves, as JSON lists.
+  Json points_json(const std::vector<ChartCurve>& curves) const;
+  static Json curves_json(const std::vector<ChartCurve>& curves);
   /// The table printed at the end of a run.
   std::string text(const std::vector<ChartCurve>& curves) const;
 };

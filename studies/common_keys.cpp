@@ -217,17 +217,19 @@ std::string frequency_label(double omega) {
   return std::stod(short_label.substr(1)) == omega ? short_label : fmt::format("w{}", omega);
 }
 
-void write_cable_numbers(ResultFile& file, const Cable<double>& cable) {
+void write_cable_numbers(ResultFile& file, RunContext& context, const Cable<double>& cable) {
   const auto p = parabola(cable);
   const auto m = modes(cable);
-  file.scalar("/cable", "sag", p.sag, "m", "f, midspan sag normal to the chord");
-  file.scalar("/cable", "sag_ratio", p.sag_ratio, "-", "f/L");
-  file.scalar("/cable", "irvine_lambda2", p.irvine_lambda2, "-", "(AE/T) 64 (f/L)^2 / (1 + (8/3)(f/L)^2)");
-  file.scalar("/cable", "frequency_number", m.frequency_number, "-", "W of the symmetric in-plane mode");
-  file.scalar("/cable", "omega1", m.omega1, "rad/s", "first out-of-plane frequency");
-  file.scalar("/cable", "omega2", m.omega2, "rad/s", "first symmetric in-plane frequency");
-  file.scalar("/cable", "frequency1", m.omega1 / (2.0 * std::numbers::pi), "Hz", "first out-of-plane frequency");
-  file.scalar("/cable", "frequency2", m.omega2 / (2.0 * std::numbers::pi), "Hz", "first symmetric in-plane frequency");
+  const Numbers numbers{{"sag", "m", "f, midspan sag normal to the chord", p.sag},
+                        {"sag_ratio", "-", "f/L", p.sag_ratio},
+                        {"irvine_lambda2", "-", "(AE/T) 64 (f/L)^2 / (1 + (8/3)(f/L)^2)", p.irvine_lambda2},
+                        {"frequency_number", "-", "W of the symmetric in-plane mode", m.frequency_number},
+                        {"omega1", "rad/s", "first out-of-plane frequency", m.omega1},
+                        {"omega2", "rad/s", "first symmetric in-plane frequency", m.omega2},
+                        {"frequency1", "Hz", "first out-of-plane frequency", m.omega1 / (2.0 * std::numbers::pi)},
+                        {"frequency2", "Hz", "first symmetric in-plane frequency", m.omega2 / (2.0 * std::numbers::pi)}};
+  write_numbers(file, "/cable", numbers);
+  context.report.put("cable", numbers_json(numbers));
 }
 
 namespace {
@@ -273,13 +275,16 @@ ExitStatus finish(ResultFile& file, RunContext& context, const std::vector<conti
   return finish(file, context, status, reasons);
 }
 
-ExitStatus finish(ResultFile& file, const RunContext& context, ExitStatus status, const std::vector<std::string>& reasons) {
+ExitStatus finish(ResultFile& file, RunContext& context, ExitStatus status, const std::vector<std::string>& reasons) {
   end_begins();
   if (interrupted) status = ExitStatus::stopped_by_user;
   const bool silent = status == ExitStatus::numerical_failure && reasons.empty();
-  file.attribute("/study", "stop_reasons", !silent ? reasons : context.warnings.empty() ? std::vector<std::string>{"no result"} : context.warnings);
+  const std::vector<std::string> told = !silent ? reasons : context.warnings.empty() ? std::vector<std::string>{"no result"} : context.warnings;
+  const std::string outcome = status == ExitStatus::ok ? "complete" : interrupted ? "interrupted" : "partial";
+  context.report.put("stop_reasons", Json::array(told)).put("warnings", Json::array(context.warnings)).put("outcome", outcome);
+  file.attribute("/study", "stop_reasons", told);
   file.attribute("/study", "warnings", context.warnings);
-  file.attribute("/study", "outcome", std::string(status == ExitStatus::ok ? "complete" : interrupted ? "interrupted" : "partial"));
+  file.attribute("/study", "outcome", outcome);
   file.flush();
   if (!published(file)) fmt::print(stderr, "{}: no result yet, an older one is left as it was\n", file.path().string());
   if (status == ExitStatus::numerical_failure && context.warnings.empty())

@@ -6,6 +6,7 @@
 #include "models/steady_motion.hpp"
 #include "models/superharmonic.hpp"
 #include "studies/configuration.hpp"
+#include "studies/numbers.hpp"
 #include "studies/result_file.hpp"
 #include "studies/run_context.hpp"
 
@@ -35,12 +36,13 @@ double largest_tension(const models::SuperharmonicFlow& flow, models::Coefficien
 void write_study(ResultFile& file, const Configuration& c);
 /// "w2.1000", with more digits where four decimals do not tell the frequency [rad/s]: part of a group's name.
 std::string frequency_label(double omega);
-void write_cable_numbers(ResultFile& file, const models::Cable<double>& cable);
-/// Warnings and stop reasons into /study; the exit status they amount to.
-/// `failures`: what else was not reached; each is a warning, a stop reason and exit status 1.
+/// Sag, stiffness ratio and frequencies of a shallow cable into /cable and the report.
+void write_cable_numbers(ResultFile& file, RunContext& context, const models::Cable<double>& cable);
+/// Warnings and stop reasons into /study and the report; the exit status they amount to.
+/// `failures`: what else was not reached, such as motions that did not settle; each is a warning, a stop reason and exit status 1.
 ExitStatus finish(ResultFile& file, RunContext& context, const std::vector<continuation::Branch>& branches,
                   const std::vector<std::string>& failures = {});
 /// The same where the outcome is known: `status`, or that the user stopped the run, with the reasons that stopped its parts.
-ExitStatus finish(ResultFile& file, const RunContext& context, ExitStatus status, const std::vector<std::string>& reasons = {});
+ExitStatus finish(ResultFile& file, RunContext& context, ExitStatus status, const std::vector<std::string>& reasons = {});
 
 }  // namespace whirl::studies

@@ -353,13 +353,15 @@ void write_map(ResultFile& file, const Configuration& c, const Setup& s, const s
   file.flush();
 }
 
-std::string json(const std::vector<Match>& matches, const std::string& words) {
-  std::string points;
-  const auto value = [](const std::optional<LevelPoint>& p) { return p ? fmt::format("{:.17g}", p->p) : std::string("null"); };
-  for (const Match& m : matches)
-    points += fmt::format(R"({}    {{"kind": "{}", "found": "{}", "exact": {}, "frozen": {}, "complete": {}}})", points.empty() ? "\n" : ",\n",
-                          m.kind, m.words(), value(m.exact), value(m.frozen), value(m.complete));
-  return fmt::format("{{\n  \"points\": [{}\n  ],\n  \"sentence\": \"{}\"\n}}\n", points, words);
+Json json(const std::vector<Match>& matches) {
+  Json points = Json::array();
+  const auto value = [](const std::optional<LevelPoint>& p) { return p ? Json(p->p) : Json(); };
+  for (const Match& m : matches) {
+    Json o = Json::object();
+    o.put("kind", m.kind).put("found", m.words()).put("exact", value(m.exact)).put("frozen", value(m.frozen));
+    points.add(std::move(o.put("complete", value(m.complete))));
+  }
+  return points;
 }
 
 ExitStatus run(const Configuration& c, RunContext& context) {
@@ -367,7 +369,7 @@ ExitStatus run(const Configuration& c, RunContext& context) {
   for (const auto& w : check_forced_system(c)) context.warn(w);
   ResultFile file(context.output);
   write_study(file, c);
-  write_forced_system(file, c);
+  write_forced_system(file, context, c);
   const ForcedSystem source = forced_system_of(c, {"omega"});
   const Levels levels = walk_levels(source, s.levels, closed_forms(c, s.levels.order, "", 0.0), context);
   context.progress.clear();
@@ -376,17 +378,17 @@ ExitStatus run(const Configuration& c, RunContext& context) {
   write_integrated(file, source, s, integrated);
   const auto matches = match_points(levels);
   write_matches(file, source, s, matches, integrated);
-  if (!context.quiet) fmt::print(stderr, "{}", points_text(matches, integrated));
+  context.print(points_text(matches, integrated));
   std::string words;
   if (!s.second_values.empty() && !interrupted) {
     const auto rows = map_errors(c, s, context);
     if (!interrupted) {
       write_map(file, c, s, rows);
       words = sentence(s, rows);
-      if (!context.quiet) fmt::print(stderr, "\n{}\n", words);
+      context.print("\n" + words + "\n");
     }
   }
-  if (context.json) fmt::print("{}", json(matches, words));
+  context.report.put("points", json(matches)).put("sentence", words);
   return finish(file, context, branches);
 }
 

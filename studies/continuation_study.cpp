@@ -119,7 +119,7 @@ ExitStatus run(const Configuration& c, RunContext& context) {
   output.columns = s.source->columns(*f);
   ResultFile file(context.output);
   write_study(file, c);
-  s.source->write(file);
+  s.source->write(file, context);
   NetworkOptions options = s.network;
   for (const auto& window : s.source->angles()) options.walk.bounds.push_back(window);
   Network net(*f, options);
@@ -151,8 +151,8 @@ ExitStatus run(const Configuration& c, RunContext& context) {
   for (const auto& note : net.notes())
     if (std::find(context.warnings.begin(), context.warnings.end(), note) == context.warnings.end()) context.warn(note);
   context.progress.clear();
-  if (context.json) fmt::print("{}", output.json(branches));
-  if (!context.quiet) fmt::print(stderr, "{}", output.text(branches));
+  output.report(context.report, branches);
+  context.print(output.text(branches));
   if (!isolated) return finish(file, context, ExitStatus::numerical_failure, {context.warnings.back()});
   return finish(file, context, branches);
 }

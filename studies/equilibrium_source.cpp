@@ -98,7 +98,7 @@ class StaySource : public EquilibriumSource {
     }
     return all;
   }
-  void write(ResultFile& file) const override { write_cable_numbers(file, stay_.cable); }
+  void write(ResultFile& file, RunContext& context) const override { write_cable_numbers(file, context, stay_.cable); }
 
  private:
   std::string amplitude(int coordinate) const { return fmt::format("q{}_h{}", coordinate, options_.order); }
@@ -191,7 +191,7 @@ class ExpressionSource : public EquilibriumSource {
       for (int i = 1; i < parts; i += 2) look(lower + (upper - lower) * i / parts);
     return all;
   }
-  void write(ResultFile& file) const override {
+  void write(ResultFile& file, RunContext&) const override {
     for (const auto& p : model_.parameters) file.scalar("/model/parameters", p.name, p.value, "-", "parameter, as the study file gives it");
     std::vector<std::string> equations;
     for (std::size_t i = 0; i < model_.rhs.size(); ++i) equations.push_back(model_.variables[i] + "' = " + model_.rhs[i]);

@@ -40,7 +40,7 @@ class EquilibriumSource {
   virtual continuation::Network::Namer namer() const = 0;
   /// Points near solutions, in the order in which they are to be tried; f has one free parameter.
   virtual std::vector<Start> starts(const Problem& f, const std::string& lens, double lower, double upper) const = 0;
-  virtual void write(ResultFile& file) const = 0;
+  virtual void write(ResultFile& file, RunContext& context) const = 0;
   /// Coordinates of which values a period apart are one, with the window of one period that walks keep to.
   virtual std::vector<continuation::CoordinateBound> angles() const { return {}; }
   /// Why the solution u of f is not isolated, one line with what to do about it; "" if it is, or if the source cannot tell.

@@ -63,6 +63,34 @@ std::string csv(const std::vector<Cells>& columns) {
   return text;
 }
 
+// Numbers that stand alone in a group, as a table of one row.
+std::vector<Cells> scalars_of(const ResultReader& reader, const std::string& group) {
+  std::vector<Cells> all;
+  for (const std::string& name : reader.scalar_names(group)) {
+    const Scalar s = reader.scalar(group, name);
+    all.push_back({name, s.unit, {fmt::format("{:.17g}", s.value)}});
+  }
+  return all;
+}
+
+// Attributes of all groups: stop reasons, tangents of groups of guys, omitted by tables. A list takes a row an entry.
+std::vector<Cells> attributes_of(const ResultReader& reader) {
+  std::vector<Cells> all{{"object", "", {}}, {"attribute", "", {}}, {"value", "", {}}};
+  const auto add = [&](const std::string& object, const std::string& name, const std::string& value) {
+    all[0].rows.push_back(csv_text(object));
+    all[1].rows.push_back(csv_text(name));
+    all[2].rows.push_back(csv_text(value));
+  };
+  for (const std::string& group : reader.groups())
+    for (const std::string& name : reader.attribute_names(group)) {
+      if (reader.holds_numbers(group, name))
+        for (const double x : reader.numbers_attribute(group, name)) add(group, name, fmt::format("{:.17g}", x));
+      else
+        for (const auto& text : reader.texts_attribute(group, name)) add(group, name, text);
+    }
+  return all;
+}
+
 /// Under another name first: whoever finds `path` finds all of it.
 void write_whole(const fs::path& path, const std::string& text) {
   const fs::path part = path.string() + ".part";
@@ -76,11 +104,11 @@ void write_whole(const fs::path& path, const std::string& text) {
   throw InputError(fmt::format("{}: cannot be written", path.string()));
 }
 
-std::string file_name(const std::string& group, std::set<std::string>& taken) {
+std::string file_name(const std::string& group, const std::string& extension, std::set<std::string>& taken) {
   std::string stem = group == "/" ? "root" : group.substr(group.find_first_not_of('/'));
   std::replace(stem.begin(), stem.end(), '/', '-');
-  std::string name = stem + ".csv";
-  for (int i = 2; !taken.insert(name).second; ++i) name = fmt::format("{}-{}.csv", stem, i);
+  std::string name = stem + extension;
+  for (int i = 2; !taken.insert(name).second; ++i) name = fmt::format("{}-{}{}", stem, i, extension);
   return name;
 }
 
@@ -94,10 +122,16 @@ std::vector<fs::path> export_csv(const fs::path& result, fs::path folder) {
   if (!fs::is_directory(folder, failure)) throw InputError(fmt::format("{}: cannot be created as a folder", folder.string()));
   std::vector<fs::path> files;
   std::set<std::string> taken;
-  for (const std::string& group : reader.tables()) {
-    files.push_back(folder / file_name(group, taken));
-    write_whole(files.back(), csv(cells_of(reader, group)));
+  const auto write = [&](const std::string& name, const char* extension, const std::string& text) {
+    files.push_back(folder / file_name(name, extension, taken));
+    write_whole(files.back(), text);
+  };
+  for (const std::string& group : reader.tables()) write(group, ".csv", csv(cells_of(reader, group)));
+  for (const std::string& group : reader.groups()) {
+    if (const auto scalars = scalars_of(reader, group); !scalars.empty()) write(group, ".csv", csv(scalars));
+    for (const std::string& name : reader.text_names(group)) write(group + "/" + name, ".txt", reader.text(group, name));
   }
+  write("attributes", ".csv", csv(attributes_of(reader)));
   return files;
 }
 

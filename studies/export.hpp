@@ -1,5 +1,6 @@
 #pragma once
-/// The tables of a result file as CSV: `branches-IP1.csv` for the table `/branches/IP1`.
+/// The tables of a result file as CSV: `branches-IP1.csv` for the table `/branches/IP1`. Numbers that stand alone in a group make a table of one row
+/// (`cable.csv` for /cable), texts a file of their own (`study-configuration.txt`), attributes a table of three columns, `attributes.csv`.
 ///
 /// The first line of a file is a comment with the units (`# omega [rad/s], type`), the second holds the column names; numbers carry 17 significant
 /// digits, so they read back unchanged. Each file appears under its name only when it is complete.

@@ -123,8 +123,8 @@ std::vector<std::string> check_forced_system(const Configuration& c) {
   return {};
 }
 
-void write_forced_system(ResultFile& file, const Configuration& c) {
-  if (!c.has("modal_model")) write_cable_numbers(file, stay_of(c).cable);
+void write_forced_system(ResultFile& file, RunContext& context, const Configuration& c) {
+  if (!c.has("modal_model")) write_cable_numbers(file, context, stay_of(c).cable);
 }
 
 }  // namespace whirl::studies

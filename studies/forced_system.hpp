@@ -9,6 +9,7 @@
 #include "models/harmonic_balance.hpp"
 #include "studies/configuration.hpp"
 #include "studies/result_file.hpp"
+#include "studies/run_context.hpp"
 
 namespace whirl::studies {
 
@@ -44,6 +45,6 @@ double forced_lens_value(const Configuration& c, const std::string& lens);
 /// Warnings about the validity of the model; refusals as InputError.
 std::vector<std::string> check_forced_system(const Configuration& c);
 /// Derived numbers of the cable into /cable; nothing for a model without one.
-void write_forced_system(ResultFile& file, const Configuration& c);
+void write_forced_system(ResultFile& file, RunContext& context, const Configuration& c);
 
 }  // namespace whirl::studies

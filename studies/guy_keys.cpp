@@ -14,18 +14,21 @@ using namespace models::guy;
 
 namespace {
 
-struct Number {
-  const char *name, *unit, *description;
-  double value;
-};
-
-std::vector<Number> numbers_of(const GuyInput& in) {
+Numbers numbers_of(const GuyInput& in) {
   const Statics& s = in.rest;
   const Guy& g = s.guy;
   const Tangent k = tangent(in.exact);
+  const auto lower = curve_at(in.exact, 0.0), upper = curve_at(in.exact, in.exact.unstressed_length);
+  const auto degrees = [](double slope) { return std::atan(slope) * 180.0 / std::numbers::pi; };
   return {{"horizontal_tension", "N", "H", s.horizontal_tension},
           {"lower_tension", "N", "tension at the anchor", s.lower_tension},
           {"upper_tension", "N", "tension at the mast", s.upper_tension},
+          {"lower_slope", "-", "dy/dx at the anchor, exact form", lower.slope},
+          {"upper_slope", "-", "dy/dx at the mast", upper.slope},
+          {"lower_slope_deg", "deg", "angle to the horizontal at the anchor", degrees(lower.slope)},
+          {"upper_slope_deg", "deg", "the same at the mast", degrees(upper.slope)},
+          {"lower_vertical_tension", "N", "vertical part of the tension at the anchor, exact form", in.exact.horizontal_tension * lower.slope},
+          {"upper_vertical_tension", "N", "the same at the mast", in.exact.horizontal_tension * upper.slope},
           {"unstressed_length", "m", "L0 in this condition's temperature", s.unstressed_length},
           {"length", "m", "L, stretched", s.length},
           {"sag", "m", "largest distance from the chord", s.sag},
@@ -145,8 +148,11 @@ std::vector<double> grid_of(const Configuration& c, const std::string& key, int 
   return grid;
 }
 
-void write_guy(ResultFile& file, const GuyInput& in) {
-  for (const Number& n : numbers_of(in)) file.scalar("/guy", n.name, n.value, n.unit, n.description);
+void write_guy(ResultFile& file, RunContext& context, const GuyInput& in) {
+  const Numbers numbers = numbers_of(in);
+  write_numbers(file, "/guy", numbers);
+  context.report.put("guy", numbers_json(numbers));
+  context.print(numbers_text(numbers));
   const std::size_t rows = 101;
   const double L = in.exact.unstressed_length;
   const auto at = [&](std::size_t i) { return curve_at(in.exact, L * static_cast<double>(i) / (rows - 1)); };
@@ -156,18 +162,6 @@ void write_guy(ResultFile& file, const GuyInput& in) {
        column("x", "m", "horizontal", rows, [&](auto i) { return at(i).x; }), column("y", "m", "vertical", rows, [&](auto i) { return at(i).y; }),
        column("tension", "N", "static tension", rows, [&](auto i) { return at(i).tension; }),
        column("slope", "-", "dy/dx", rows, [&](auto i) { return at(i).slope; })});
-}
-
-std::string guy_text(const GuyInput& in) {
-  std::string text;
-  for (const Number& n : numbers_of(in)) text += fmt::format("{:<28} {:>18.10g} {:<6} {}\n", n.name, n.value, n.unit, n.description);
-  return text;
-}
-
-std::string guy_json(const GuyInput& in) {
-  std::string text;
-  for (const Number& n : numbers_of(in)) text += fmt::format(R"({}"{}": {:.17g})", text.empty() ? "" : ", ", n.name, n.value);
-  return "{" + text + "}";
 }
 
 std::vector<std::string> guy_warnings(const GuyInput& in) {

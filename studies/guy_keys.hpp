@@ -7,6 +7,7 @@
 #include "models/guy/linear_guy.hpp"
 #include "models/guy/statics.hpp"
 #include "studies/configuration.hpp"
+#include "studies/numbers.hpp"
 #include "studies/result_file.hpp"
 #include "studies/run_context.hpp"
 
@@ -51,12 +52,8 @@ Column column(const std::string& name, const std::string& unit, const std::strin
   return made;
 }
 
-/// /guy: everything derived, with units.
-void write_guy(ResultFile& file, const GuyInput& guy);
-/// What standard error shows of it.
-std::string guy_text(const GuyInput& guy);
-/// {"horizontal_tension": ..., ...}
-std::string guy_json(const GuyInput& guy);
+/// /guy and /static_curve: everything derived, with units; in the report and the printed table too.
+void write_guy(ResultFile& file, RunContext& context, const GuyInput& guy);
 
 /// Warnings about what the input means, for `whirl check` and the file.
 std::vector<std::string> guy_warnings(const GuyInput& guy);

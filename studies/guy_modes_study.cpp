@@ -179,19 +179,21 @@ void write_scan(ResultFile& file, const Setup& s, RunContext& context) {
   file.table("/scan", columns);
 }
 
-std::string table(const Setup& s, const LinearGuy& full, bool json) {
+// Frequencies of the guy by number, and of its string.
+void report(RunContext& context, const Setup& s, const LinearGuy& full) {
   const TransverseModes modes(s.guy.rest);
   const auto in = full.poles(Plane::in_plane), out = full.poles(Plane::out_of_plane);
-  std::string text =
-      json ? "" : fmt::format("{:<6} {:>18} {:>18} {:>18} {:>18}   [rad/s]\n", "mode", "in plane", "out of plane", "linear tension", "string");
+  std::string text = fmt::format("\n{:<6} {:>18} {:>18} {:>18} {:>18}   [rad/s]\n", "mode", "in plane", "out of plane", "linear tension", "string");
+  Json rows = Json::array();
   for (int i = 1; i <= s.count; ++i) {
     const double a = in[static_cast<std::size_t>(i) - 1].frequency, b = out[static_cast<std::size_t>(i) - 1].frequency;
-    if (json)
-      text += fmt::format(R"({}    {{"mode": {}, "in_plane": {:.17g}, "out_of_plane": {:.17g}, "transverse": {:.17g}, "string": {:.17g}}})",
-                          i == 1 ? "\n" : ",\n", i, a, b, modes.frequency(i), string_frequency(s.guy.rest, i));
-    else text += fmt::format("{:<6} {:>18.12f} {:>18.12f} {:>18.12f} {:>18.12f}\n", i, a, b, modes.frequency(i), string_frequency(s.guy.rest, i));
+    const double transverse = modes.frequency(i), string = string_frequency(s.guy.rest, i);
+    Json o = Json::object();
+    rows.add(std::move(o.put("mode", i).put("in_plane", a).put("out_of_plane", b).put("transverse", transverse).put("string", string)));
+    text += fmt::format("{:<6} {:>18.12f} {:>18.12f} {:>18.12f} {:>18.12f}\n", i, a, b, transverse, string);
   }
-  return text;
+  context.report.put("modes", std::move(rows));
+  context.print(text);
 }
 
 ExitStatus run(const Configuration& c, RunContext& context) {
@@ -199,7 +201,8 @@ ExitStatus run(const Configuration& c, RunContext& context) {
   for (const auto& w : guy_warnings(s.guy)) context.warn(w);
   ResultFile file(context.output);
   write_study(file, c);
-  write_guy(file, s.guy);
+  context.report.put("special_points", Json::array()).put("branches", Json::array());
+  write_guy(file, context, s.guy);
   write_transverse(file, s);
   const LinearGuy full = resolved(s.guy.exact, s.count);
   bool complete = true;
@@ -210,10 +213,7 @@ ExitStatus run(const Configuration& c, RunContext& context) {
   file.attribute("/modes/in_plane", "degree", full.degree());
   file.flush();
   write_scan(file, s, context);
-  if (context.json)
-    fmt::print("{{\n  \"special_points\": [],\n  \"branches\": [],\n  \"guy\": {},\n  \"modes\": [{}\n  ]\n}}\n", guy_json(s.guy),
-               table(s, full, true));
-  if (!context.quiet) fmt::print(stderr, "{}\n{}", guy_text(s.guy), table(s, full, false));
+  report(context, s, full);
   return finish(file, context, complete ? ExitStatus::ok : ExitStatus::numerical_failure,
                 {complete ? "all modes found; an independent count agrees" : "a mode is missing"});
 }

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -164,7 +165,8 @@ void write_curve(ResultFile& file, const Setup& s, const Statics& rest) {
   file.table(exact ? "/curve/exact" : "/curve/first_order", columns);
 }
 
-void write_group(ResultFile& file, const Setup& s, double direction) {
+// A group moved in one direction: its curve into the file, its tangents and extremes as well into the report and the printed table.
+Json write_group(ResultFile& file, RunContext& context, const Setup& s, double direction) {
   const Group group = group_of(s);
   std::vector<Reaction> axial, full;
   for (const double d : s.displacements) {
@@ -181,8 +183,29 @@ void write_group(ResultFile& file, const Setup& s, double direction) {
                     column("smallest_tension", "N", "of the guys' upper ends", n, [&](auto i) { return full[i].smallest_tension; })});
   file.attribute(name, "direction_deg", direction);
   file.attribute(name, "azimuths_deg", s.azimuths);
-  file.attribute(name, "tangent", group_modulus(group, direction * degree, GroupTerms::full_geometry));
-  file.attribute(name, "tangent_axial", group_modulus(group, direction * degree, GroupTerms::axial));
+  const double tangent = group_modulus(group, direction * degree, GroupTerms::full_geometry);
+  const double tangent_axial = group_modulus(group, direction * degree, GroupTerms::axial);
+  file.attribute(name, "tangent", tangent);
+  file.attribute(name, "tangent_axial", tangent_axial);
+  const auto value = [&](auto member) {
+    std::vector<double> values;
+    for (const Reaction& r : full) values.push_back(r.*member);
+    return values;
+  };
+  const auto tensions = value(&Reaction::largest_tension), least = value(&Reaction::smallest_tension), along = value(&Reaction::along);
+  const double largest = *std::max_element(tensions.begin(), tensions.end()), smallest = *std::min_element(least.begin(), least.end());
+  context.print(
+      fmt::format("group of {} guys moved at {:g} deg: tangent {:.10g} N/m (spans only {:.10g}); from {:g} to {:g} m reaction {:.8g} to {:.8g} N, "
+                  "tension at the mast {:.8g} to {:.8g} N\n",
+                  s.azimuths.size(), direction, tangent, tangent_axial, s.displacements.front(), s.displacements.back(), along.front(), along.back(),
+                  smallest, largest));
+  Json o = Json::object();
+  o.put("direction_deg", direction).put("tangent", tangent).put("tangent_axial", tangent_axial);
+  o.put("largest_tension", largest).put("smallest_tension", smallest);
+  o.put("displacement", Json::array(s.displacements))
+      .put("reaction", Json::array(along))
+      .put("reaction_across", Json::array(value(&Reaction::across)));
+  return o;
 }
 
 void write_polygon(ResultFile& file, const std::string& name, const Polygon& p) {
@@ -214,12 +237,15 @@ ExitStatus run(const Configuration& c, RunContext& context) {
   for (const auto& w : guy_warnings(s.guy)) context.warn(w);
   ResultFile file(context.output);
   write_study(file, c);
-  write_guy(file, s.guy);
+  context.report.put("special_points", Json::array()).put("branches", Json::array());
+  write_guy(file, context, s.guy);
   write_curve(file, s, s.guy.first_order);
   write_curve(file, s, s.guy.exact);
   file.flush();
+  Json groups = Json::array();
   if (!s.azimuths.empty())
-    for (const double direction : s.directions) write_group(file, s, direction);
+    for (const double direction : s.directions) groups.add(write_group(file, context, s, direction));
+  context.report.put("groups", std::move(groups));
   ExitStatus status = ExitStatus::ok;
   std::vector<std::string> reasons{"all parts computed"};
   try {
@@ -229,8 +255,6 @@ ExitStatus run(const Configuration& c, RunContext& context) {
     reasons = {e.what()};
     status = ExitStatus::numerical_failure;
   }
-  if (context.json) fmt::print("{{\n  \"special_points\": [],\n  \"branches\": [],\n  \"guy\": {}\n}}\n", guy_json(s.guy));
-  if (!context.quiet) fmt::print(stderr, "{}", guy_text(s.guy));
   return finish(file, context, status, reasons);
 }
 

@@ -167,15 +167,59 @@ void write_longitudinal(ResultFile& file, const GuyStiffnessSetup& s) {
   file.attribute("/longitudinal", "alpha", forms.alpha());
 }
 
-std::string stiffness_json(const GuyStiffnessSetup& s, const std::vector<PoleOrZero>& all) {
-  std::string points;
-  for (const PoleOrZero& p : all)
-    points += fmt::format(R"({}    {{"branch": "{}", "type": "{}", "omega": {:.17g}, "strength": {:.17g}}})", points.empty() ? "\n" : ",\n",
-                          p.direction, p.type, p.omega, p.strength);
-  return fmt::format(
-      "{{\n  \"special_points\": [{}\n  ],\n  \"branches\": [\n    {{\"name\": \"horizontal\", \"points\": {}, \"stop_reason\": \"end\"}}\n  ],\n  "
-      "\"guy\": {}\n}}\n",
-      points, s.omega.size(), guy_json(s.guy));
+void report_stiffness(Json& results, const GuyStiffnessSetup& s, const std::vector<PoleOrZero>& all) {
+  Json points = Json::array(), branches = Json::array(), branch = Json::object();
+  for (const PoleOrZero& p : all) {
+    Json o = Json::object();
+    points.add(std::move(o.put("branch", p.direction).put("type", p.type).put("omega", p.omega).put("strength", p.strength)));
+  }
+  branches.add(std::move(branch.put("name", "horizontal").put("points", s.omega.size()).put("stop_reason", "end")));
+  results.put("special_points", std::move(points)).put("branches", std::move(branches));
+}
+
+std::vector<StiffnessAt> stiffness_at(const GuyStiffnessSetup& s, const LinearGuy& full) {
+  const ClosedStiffness forms(s.guy.first_order, s.alpha);
+  std::vector<LevelMember> level;
+  for (const double a : s.azimuths) level.push_back({&full, a * pi / 180.0});
+  std::vector<StiffnessAt> rows;
+  for (const double omega : s.at) {
+    const StiffnessMatrix k = full.stiffness(omega, s.damping_rate);
+    StiffnessAt row{omega, {{"xx", k.xx}, {"xy", k.xy}, {"yy", k.yy}, {"zz", k.zz}}};
+    for (const ClosedForm form : s.forms)
+      row.entries.emplace_back(underscored(std::string(to_string(form))), forms.modulus(form, omega, s.damping_rate));
+    row.entries.emplace_back("zz_linear_tension", forms.out_of_plane(omega, s.damping_rate));
+    if (!level.empty()) {
+      const Eigen::Matrix3cd K = level_stiffness(level, omega, s.damping_rate);
+      for (const auto& [name, value] : {std::pair{"XX", K(0, 0)}, {"XY", K(0, 1)}, {"YY", K(1, 1)}, {"ZZ", K(2, 2)}})
+        row.entries.emplace_back(name, value);
+    }
+    rows.push_back(std::move(row));
+  }
+  return rows;
+}
+
+void write_stiffness_at(ResultFile& file, RunContext& context, const std::vector<StiffnessAt>& rows) {
+  if (rows.empty()) return;
+  std::vector<Column> columns{column("omega", "rad/s", "frequency of the mast's motion", rows.size(), [&](auto i) { return rows[i].omega; })};
+  Json list = Json::array();
+  std::string text = "\nstiffness [N/m]\n";
+  for (std::size_t k = 0; k < rows.front().entries.size(); ++k) {
+    std::vector<C> values;
+    for (const StiffnessAt& row : rows) values.push_back(row.entries[k].second);
+    add_complex(columns, rows.front().entries[k].first, "as in the other tables of /stiffness; XX, XY, YY, ZZ: of the level", values);
+  }
+  for (const StiffnessAt& row : rows) {
+    Json o = Json::object();
+    o.put("omega", row.omega);
+    for (const auto& [name, value] : row.entries) {
+      o.put(name + "_re", value.real()).put(name + "_im", value.imag());
+      text += fmt::format("at {:>14.8g} rad/s  {:<20} {:>18.10g} {:>+18.10g} i\n", row.omega, name, value.real(), value.imag());
+    }
+    list.add(std::move(o));
+  }
+  file.table("/stiffness/at", columns);
+  context.report.put("stiffness", std::move(list));
+  context.print(text);
 }
 
 std::string stiffness_text(const GuyStiffnessSetup& s, const std::vector<PoleOrZero>& all) {

@@ -29,6 +29,11 @@ Schema schema() {
          .max_items = 2,
          .example = Value{std::vector<double>{0.02, 9.0}}});
   s.add_count("stiffness.points", "frequencies", 2000, 2, 1e6);
+  s.add({.name = "stiffness.at",
+         .unit = "rad/s",
+         .description = "frequencies within the range at which the stiffness is printed and stands in a table of its own",
+         .default_value = std::vector<double>{},
+         .lower = 0.0});
   s.add({.name = "stiffness.closed_forms",
          .description = "closed forms of the horizontal modulus to compare with",
          .default_value = std::vector<std::string>{"classical", "completed", "sarvi", "sarvi-modal"},
@@ -58,6 +63,7 @@ Schema schema() {
 Setup setup(const Configuration& c) {
   Setup s{.guy = guy_of(c),
           .omega = grid_of(c, "stiffness.range", static_cast<int>(c.integer("stiffness.points"))),
+          .at = c.numbers("stiffness.at"),
           .azimuths = c.numbers("level.azimuths_deg"),
           .forms = {}};
   s.damping_rate = damping_rate_of(c, s.guy.first_order);
@@ -67,6 +73,8 @@ Setup setup(const Configuration& c) {
   for (const ClosedForm form : all_closed_forms)
     if (const auto& names = c.texts("stiffness.closed_forms"); std::find(names.begin(), names.end(), to_string(form)) != names.end())
       s.forms.push_back(form);
+  for (const double omega : s.at)
+    if (omega > s.omega.back()) throw c.error("stiffness.at", fmt::format("must not lie above stiffness.range, got {:g}", omega));
   const auto guys = c.integer("level.guys");
   if (guys > 0 && !s.azimuths.empty()) throw c.error("level.guys", "is given beside level.azimuths_deg: give one of them");
   for (int j = 0; j < guys; ++j) s.azimuths.push_back(360.0 * j / static_cast<double>(guys));
@@ -94,7 +102,7 @@ ExitStatus run(const Configuration& c, RunContext& context) {
   for (const auto& w : warnings_of(s)) context.warn(w);
   ResultFile file(context.output);
   write_study(file, c);
-  write_guy(file, s.guy);
+  write_guy(file, context, s.guy);
   const LinearGuy full(s.guy.exact, s.omega.back(), s.degree);
   write_horizontal(file, s, full);
   write_matrix(file, s, full);
@@ -111,8 +119,9 @@ ExitStatus run(const Configuration& c, RunContext& context) {
   }
   write_longitudinal(file, s);
   write_convergence(file, s);
-  if (context.json) fmt::print("{}", stiffness_json(s, listed));
-  if (!context.quiet) fmt::print(stderr, "{}{}", guy_text(s.guy), stiffness_text(s, listed));
+  report_stiffness(context.report, s, listed);
+  context.print(stiffness_text(s, listed));
+  write_stiffness_at(file, context, stiffness_at(s, full));
   return finish(file, context, complete ? ExitStatus::ok : ExitStatus::numerical_failure,
                 {complete ? "horizontal: range end; all poles found, an independent count agrees" : "a pole is missing"});
 }

@@ -350,18 +350,26 @@ std::string text_of(const std::vector<Run>& runs, const std::vector<AttractorRow
   return out;
 }
 
-std::string json_of(const std::vector<Run>& runs, const std::vector<AttractorRow>& rows, const std::vector<Swept>& swept, const Setup& s) {
-  std::string r, a, t;
-  for (const Run& run : runs)
-    r += fmt::format("{}    {{\"omega\": {:.17g}, \"start\": \"{}\", \"motion\": \"{}\", \"periods\": {}, \"attractor\": \"{}\"}}",
-                     r.empty() ? "\n" : ",\n", run.omega, run.start, to_string(run.settled.kind), run.settled.periods,
-                     run.attractor >= 0 ? rows[static_cast<std::size_t>(run.attractor)].name : "");
-  for (const auto& row : rows) a += fmt::format("{}    {{{}}}", a.empty() ? "\n" : ",\n", attractor_json(row, s.forced));
+void report(Json& results, const std::vector<Run>& runs, const std::vector<AttractorRow>& rows, const std::vector<Swept>& swept, const Setup& s) {
+  Json begun = Json::array(), attractors = Json::array(), transitions = Json::array();
+  for (const Run& r : runs) {
+    Json o = Json::object();
+    o.put("omega", r.omega).put("start", r.start).put("motion", to_string(r.settled.kind)).put("periods", r.settled.periods);
+    o.put("attractor", r.attractor >= 0 ? rows[static_cast<std::size_t>(r.attractor)].name : "");
+    begun.add(std::move(o.put("why", r.settled.why)));
+  }
+  for (const auto& row : rows) {
+    Json o = Json::object();
+    put_attractor(o, row, s.forced);
+    attractors.add(std::move(o));
+  }
   for (const auto& w : swept)
-    for (const auto& x : w.sweep.transitions)
-      t += fmt::format("{}    {{\"sweep\": \"{}\", \"{}\": {:.17g}, \"bracket\": [{:.17g}, {:.17g}], \"jump\": {}, \"what\": \"{}\"}}",
-                       t.empty() ? "\n" : ",\n", w.way, s.parameter, 0.5 * (x.before + x.after), x.before, x.after, x.jump, x.what);
-  return fmt::format("{{\n  \"runs\": [{}\n  ],\n  \"attractors\": [{}\n  ],\n  \"transitions\": [{}\n  ]\n}}\n", r, a, t);
+    for (const auto& t : w.sweep.transitions) {
+      Json o = Json::object();
+      o.put("sweep", w.way).put(s.parameter, 0.5 * (t.before + t.after)).put("bracket", Json::array(std::vector<double>{t.before, t.after}));
+      transitions.add(std::move(o.put("jump", t.jump).put("what", t.what)));
+    }
+  results.put("runs", std::move(begun)).put("attractors", std::move(attractors)).put("transitions", std::move(transitions));
 }
 
 ExitStatus run(const Configuration& c, RunContext& context) {
@@ -369,7 +377,7 @@ ExitStatus run(const Configuration& c, RunContext& context) {
   for (const auto& w : check_forced_system(c)) context.warn(w);
   ResultFile file(context.output);
   write_study(file, c);
-  write_forced_system(file, c);
+  write_forced_system(file, context, c);
   auto runs = integrate_all(c, s, context);
   write_transients(file, runs, s);
   std::vector<std::unique_ptr<AttractorSet>> sets;
@@ -392,8 +400,8 @@ ExitStatus run(const Configuration& c, RunContext& context) {
       context.warn(fmt::format("sweep {} ended early: {}", w.way, w.sweep.why));
       whole = false;
     }
-  if (context.json) fmt::print("{}", json_of(runs, rows, swept, s));
-  if (!context.quiet) fmt::print(stderr, "{}", text_of(runs, rows, swept, s));
+  report(context.report, runs, rows, swept, s);
+  context.print(text_of(runs, rows, swept, s));
   return finish(file, context, whole ? ExitStatus::ok : ExitStatus::numerical_failure);
 }
 

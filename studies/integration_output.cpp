@@ -158,6 +158,10 @@ std::vector<Column> attractor_columns(const std::vector<AttractorRow>& rows, con
     const std::string& q = s.coordinates[i];
     table.push_back(column_of(rows, q + "_max", s.length_unit, "largest " + q, [k](const auto& r) { return r.motion.record.row(k).maxCoeff(); }));
     table.push_back(column_of(rows, q + "_min", s.length_unit, "least " + q, [k](const auto& r) { return r.motion.record.row(k).minCoeff(); }));
+    table.push_back(column_of(rows, q + "_highest", s.length_unit, "largest " + q + ", named as in periodic results",
+                              [k](const auto& r) { return r.motion.record.row(k).maxCoeff(); }));
+    table.push_back(column_of(rows, q + "_lowest", s.length_unit, "least " + q + ", named as in periodic results",
+                              [k](const auto& r) { return r.motion.record.row(k).minCoeff(); }));
     for (const auto& [h, name] : harmonics_of(rows))
       table.push_back(column_of(rows, fmt::format("{}_h{}", q, name), s.length_unit, fmt::format("amplitude of {} omega in {}", name, q),
                                 [i, h = h](const auto& r) { return std::abs(r.motion.harmonic(static_cast<int>(i), h)); }));
@@ -200,15 +204,16 @@ std::string attractor_text(const std::vector<AttractorRow>& rows, const ForcedSy
   return out;
 }
 
-std::string attractor_json(const AttractorRow& r, const ForcedSystem& s) {
-  std::string out = fmt::format(R"("attractor": "{}", "omega": {:.17g}, "motion": "{}", "period": {}, "lyapunov": {:.6g}, "lyapunov_error": {:.3g}, )"
-                                R"("second_frequency": {:.8g}, "mirror": "{}", "residual": {:.3g})",
-                                r.name, r.omega, to_string(r.attractor->kind), r.attractor->multiple, r.attractor->lyapunov,
-                                r.attractor->lyapunov_error, r.attractor->second_frequency, r.mirror, r.attractor->residual);
-  for (std::size_t q = 0; q < s.coordinates.size(); ++q)
+void put_attractor(Json& o, const AttractorRow& r, const ForcedSystem& s) {
+  o.put("attractor", r.name).put("omega", r.omega).put("motion", to_string(r.attractor->kind)).put("period", r.attractor->multiple);
+  o.put("lyapunov", r.attractor->lyapunov).put("lyapunov_error", r.attractor->lyapunov_error);
+  o.put("second_frequency", r.attractor->second_frequency).put("mirror", r.mirror).put("residual", r.attractor->residual);
+  for (std::size_t q = 0; q < s.coordinates.size(); ++q) {
+    const auto values = r.motion.record.row(static_cast<Eigen::Index>(q));
+    o.put(s.coordinates[q] + "_highest", values.maxCoeff()).put(s.coordinates[q] + "_lowest", values.minCoeff());
     for (const auto& [h, name] : harmonics_of({r}))
-      out += fmt::format(R"(, "{}_h{}": {:.10g})", s.coordinates[q], name, std::abs(r.motion.harmonic(static_cast<int>(q), h)));
-  return out;
+      o.put(fmt::format("{}_h{}", s.coordinates[q], name), std::abs(r.motion.harmonic(static_cast<int>(q), h)));
+  }
 }
 
 void write_motion_tables(ResultFile& file, const std::string& group, const AttractorRow& row, const ForcedSystem& s) {

@@ -32,7 +32,7 @@ std::vector<Column> attractor_columns(const std::vector<AttractorRow>& rows, con
 std::vector<TextColumn> attractor_texts(const std::vector<AttractorRow>& rows);
 std::string attractor_text(const std::vector<AttractorRow>& rows, const ForcedSystem& s, const std::vector<std::string>& extra_heads = {},
                            const std::vector<std::vector<std::string>>& extra = {});
-std::string attractor_json(const AttractorRow& row, const ForcedSystem& s);
+void put_attractor(Json& object, const AttractorRow& row, const ForcedSystem& s);
 
 /// series, spectrum (lines: coordinate, multiple of omega, amplitude, phase), for motions without period the whole amplitude spectrum.
 void write_motion_tables(ResultFile& file, const std::string& group, const AttractorRow& row, const ForcedSystem& s);

@@ -1,8 +1,10 @@
 // The program `whirl`: command line only; everything it does lives in the library beside it.
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstdio>
 #include <filesystem>
 
@@ -14,6 +16,7 @@
 #include "studies/open_results.hpp"
 #include "studies/registry.hpp"
 #include "studies/result_file.hpp"
+#include "studies/result_place.hpp"
 #include "studies/standard_streams.hpp"
 
 using namespace whirl::studies;
@@ -53,14 +56,19 @@ ExitStatus run(const std::string& file, const std::vector<std::string>& override
   std::error_code ignored;
   if (fs::equivalent(context.output, file, ignored)) throw InputError(fmt::format("{}: is the study file itself, not a place for results", file));
   ResultFile::check_writable(context.output);
+  check_result_place(context.output);
   catch_interrupts_of_run(quiet);
   ExitStatus status;
+  context.report.put("kind", configuration.kind());
   try {
     status = kind.run(configuration, context);
   } catch (const std::exception& e) {
     ResultFile::mark_failed(context.output, e.what());
     throw;
   }
+  for (const char* key : {"special_points", "branches"})  // in the report of every kind
+    if (!context.report.has(key)) context.report.put(key, Json::array());
+  if (json) fmt::print("{}", context.report.text());
   if (!quiet) fmt::print(stderr, "{}result: {}\n", interrupted ? "interrupted; " : "", context.output.string());
   return status;
 }
@@ -84,13 +92,39 @@ std::vector<std::string> exported(const std::string& file, const std::string& fo
   });
 }
 
+// A line that helps where the first word is missing or no command: a misspelt one, or a study file without `run` before it.
+void check_first_word(const CLI::App& app, int argc, char** argv) {
+  std::vector<std::string> names;
+  for (const CLI::App* command : app.get_subcommands({})) names.push_back(command->get_name());
+  if (argc < 2) throw InputError(fmt::format("a command is needed: {}; see whirl --help", fmt::join(names, ", ")));
+  const std::string word = argv[1];
+  if (word.starts_with("-") || std::find(names.begin(), names.end(), word) != names.end()) return;
+  std::error_code ignored;
+  const std::string near = fs::is_regular_file(word, ignored) || word.ends_with(".toml") ? "run " + word : nearest(word, names);
+  throw InputError(near.empty() ? fmt::format("no command '{}': one of {}; see whirl --help", word, fmt::join(names, ", "))
+                                : fmt::format("no command '{}', did you mean `whirl {}`? see whirl --help", word, near));
+}
+
+// What `whirl help COMMAND` prints; of the whole program without a name.
+std::string help_text(const CLI::App& app, const std::string& name) {
+  std::vector<std::string> names;
+  for (const CLI::App* command : app.get_subcommands({})) {
+    names.push_back(command->get_name());
+    if (names.back() == name) return command->help("whirl " + name);
+  }
+  if (name.empty()) return app.help();
+  const std::string near = nearest(name, names);
+  throw InputError(fmt::format("no command '{}'{}", name,
+                               near.empty() ? fmt::format(": one of {}", fmt::join(names, ", ")) : fmt::format(", did you mean '{}'?", near)));
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
   secure_standard_streams();
   whirl::keep_freed_memory();
   CLI::App app{"Whirl: nonlinear response of cables by continuation, averaging and time integration"};
-  app.set_version_flag("--version", version_text());
+  app.set_version_flag("-V,--version", version_text());
   app.require_subcommand(1);
   app.failure_message([](const CLI::App*, const CLI::Error& e) { return fmt::format("error: {}; see whirl --help\n", brief(e.what())); });
   std::string file, output, kind;
@@ -101,8 +135,8 @@ int main(int argc, char** argv) {
   run_command->add_option("FILE", file, "study file (TOML)")->required();
   run_command->add_option("--set", overrides, "override a key: section.key=value (repeatable)")->allow_extra_args(false);
   run_command->add_option("-o,--output", output, "result file; default: the study's name with .h5, in this folder");
-  run_command->add_flag("--json", json, "special points and branches as JSON on standard output");
-  run_command->add_flag("-q,--quiet", quiet, "no tables on standard error");
+  run_command->add_flag("--json", json, "results as JSON on standard output, tables on standard error");
+  run_command->add_flag("-q,--quiet", quiet, "no tables");
   auto* check_command = app.add_subcommand("check", "read and check a study file, compute nothing");
   check_command->add_option("FILE", file, "study file (TOML)")->required();
   check_command->add_option("--set", overrides, "override a key: section.key=value (repeatable)")->allow_extra_args(false);
@@ -115,10 +149,17 @@ int main(int argc, char** argv) {
   auto* export_command = app.add_subcommand("export", "tables of a result file as CSV, one file per branch");
   export_command->add_option("FILE", file, "result file (HDF5)")->required();
   export_command->add_option("-o,--output", output, "folder; default: <result>-csv beside the file");
+  std::string subject;
+  auto* help_command = app.add_subcommand("help", "explain the program, or one of its commands");
+  help_command->add_option("COMMAND", subject, "command");
+  auto* version_command = app.add_subcommand("version", "version and libraries");
 
   ExitStatus status = ExitStatus::ok;
   try {
+    check_first_word(app, argc, argv);
     app.parse(argc, argv);
+    if (help_command->parsed()) fmt::print("{}", help_text(app, subject));
+    if (version_command->parsed()) fmt::print("{}\n", version_text());
     if (run_command->parsed()) status = run(file, overrides, output, json, quiet);
     if (check_command->parsed()) status = check(file, overrides);
     if (modes_command->parsed()) fmt::print("{}", modes_table(read(file, overrides)));

@@ -238,14 +238,14 @@ std::string text(const std::vector<Row>& rows) {
   return out;
 }
 
-std::string json(const std::vector<Row>& rows) {
-  std::string list;
-  const auto value = [](double x) { return std::isfinite(x) ? fmt::format("{:.17g}", x) : std::string("null"); };
-  for (const Row& r : rows)
-    list += fmt::format(R"({}    {{"longitudinal": "{}", "modes": {}, "threshold": {}, "threshold_omega": {}, "peak": {}, "peak_omega": {}}})",
-                        list.empty() ? "\n" : ",\n", name_of(r.treatment), r.modes, value(r.threshold), value(r.threshold_omega), value(r.peak),
-                        value(r.peak_omega));
-  return fmt::format("{{\n  \"convergence\": [{}\n  ]\n}}\n", list);
+Json json(const std::vector<Row>& rows) {
+  Json list = Json::array();
+  for (const Row& r : rows) {
+    Json o = Json::object();
+    o.put("longitudinal", name_of(r.treatment)).put("modes", r.modes).put("threshold", r.threshold).put("threshold_omega", r.threshold_omega);
+    list.add(std::move(o.put("peak", r.peak).put("peak_omega", r.peak_omega)));
+  }
+  return list;
 }
 
 ExitStatus run(const Configuration& c, RunContext& context) {
@@ -253,7 +253,7 @@ ExitStatus run(const Configuration& c, RunContext& context) {
   for (const auto& w : check(c)) context.warn(w);
   ResultFile file(context.output);
   write_study(file, c);
-  write_cable_numbers(file, s.base.stay.cable);
+  write_cable_numbers(file, context, s.base.stay.cable);
   std::vector<Row> rows;
   for (const Longitudinal t : s.treatments)
     for (const int n : s.counts) {
@@ -281,10 +281,9 @@ ExitStatus run(const Configuration& c, RunContext& context) {
       advice += fmt::format("{}{}: from {} mode{} in each plane on, threshold and peak are within 1 % of the richest model here.",
                             advice.empty() ? "" : " ", name_of(t), n, n == 1 ? "" : "s");
   file.attribute("/convergence", "advice", advice);
-  const ExitStatus status = finish(file, context, whole ? ExitStatus::ok : ExitStatus::numerical_failure);
-  if (context.json) fmt::print("{}", json(rows));
-  if (!context.quiet) fmt::print(stderr, "{}{}\n", text(rows), advice);
-  return status;
+  context.report.put("convergence", json(rows)).put("advice", advice);
+  context.print(text(rows) + advice + "\n");
+  return finish(file, context, whole ? ExitStatus::ok : ExitStatus::numerical_failure);
 }
 
 }  // namespace

@@ -10,6 +10,7 @@
 #include "models/statics.hpp"
 #include "studies/catenary_modes_study.hpp"
 #include "studies/common_keys.hpp"
+#include "studies/numbers.hpp"
 
 namespace whirl::studies {
 namespace {
@@ -161,20 +162,20 @@ std::string text(const Report& r) {
   return out;
 }
 
-void write_cable(ResultFile& file, const Report& r) {
+Numbers numbers_of(const Report& r) {
   const auto& s = r.statics;
-  file.scalar("/cable", "chord_tension", r.cable.chord_tension, "N", "static tension along the chord");
-  file.scalar("/cable", "chord_length", r.cable.chord_length, "m", "l");
-  file.scalar("/cable", "sag", s.sag, "m", "d, at midspan across the chord");
-  file.scalar("/cable", "sag_ratio", s.sag_ratio, "-", "r = d/l");
-  file.scalar("/cable", "lambda2", s.lambda2, "-", "(8 d/l)^2 l EA/(T Le), Le/l = 1 + 8 r^2");
-  file.scalar("/cable", "irvine_lambda2", parabola(r.cable).irvine_lambda2, "-", "the same with Le/l = 1 + (8/3) r^2, as the modal models take it");
-  file.scalar("/cable", "effective_length", s.effective_length, "m", "Le");
-  file.scalar("/cable", "arc_length", s.arc_length, "m", "under tension");
-  file.scalar("/cable", "unstressed_length", s.unstressed_length, "m", "arc length less the stretch");
   const auto e = elastic_correction(s.lambda2);
-  file.scalar("/cable", "tension_drop", e.tension_drop, "-", "H* of the elastic parabola, were this tension the inextensible cable's");
-  file.scalar("/cable", "sag_increase", e.sag_increase, "-", "d* = H*/(1 - H*)");
+  return {{"chord_tension", "N", "static tension along the chord", r.cable.chord_tension},
+          {"chord_length", "m", "l", r.cable.chord_length},
+          {"sag", "m", "d, at midspan across the chord", s.sag},
+          {"sag_ratio", "-", "r = d/l", s.sag_ratio},
+          {"lambda2", "-", "(8 d/l)^2 l EA/(T Le), Le/l = 1 + 8 r^2", s.lambda2},
+          {"irvine_lambda2", "-", "the same with Le/l = 1 + (8/3) r^2, as the modal models take it", parabola(r.cable).irvine_lambda2},
+          {"effective_length", "m", "Le", s.effective_length},
+          {"arc_length", "m", "under tension", s.arc_length},
+          {"unstressed_length", "m", "arc length less the stretch", s.unstressed_length},
+          {"tension_drop", "-", "H* of the elastic parabola, were this tension the inextensible cable's", e.tension_drop},
+          {"sag_increase", "-", "d* = H*/(1 - H*)", e.sag_increase}};
 }
 
 void write_modes(ResultFile& file, const std::vector<ModeShape>& modes) {
@@ -270,17 +271,21 @@ void write_resonances(ResultFile& file, const Report& r) {
   file.table("/resonances", {at, detuning, driven}, {kind, condition, first, second});
 }
 
-std::string json(const Report& r) {
-  std::string modes, near;
-  for (const auto& m : r.modes)
-    modes +=
-        fmt::format(R"({}    {{"mode": "{}", "family": "{}", "order": {}, "frequency_number": {:.17g}, "omega": {:.17g}, "frequency": {:.17g}}})",
-                    modes.empty() ? "\n" : ",\n", m.name(), to_string(m.family()), m.order(), m.frequency_number(), m.omega(), m.frequency_hz());
-  for (const auto& q : r.resonances)
-    near += fmt::format(R"({}    {{"kind": "{}", "condition": "{}", "at": {:.17g}, "detuning": {}, "driven": {}}})", near.empty() ? "\n" : ",\n",
-                        to_string(q.kind), q.condition, q.at, std::isnan(q.detuning) ? "null" : fmt::format("{:.17g}", q.detuning), q.driven);
-  return fmt::format("{{\n  \"chord_tension\": {:.17g},\n  \"lambda2\": {:.17g},\n  \"modes\": [{}\n  ],\n  \"resonances\": [{}\n  ]\n}}\n",
-                     r.cable.chord_tension, r.statics.lambda2, modes, near);
+void put_modes(Json& results, const Report& r) {
+  Json modes = Json::array(), near = Json::array();
+  for (const auto& m : r.modes) {
+    Json o = Json::object();
+    o.put("mode", m.name()).put("family", to_string(m.family())).put("order", m.order()).put("frequency_number", m.frequency_number());
+    o.put("omega", m.omega()).put("frequency", m.frequency_hz()).put("nodes", m.internal_nodes()).put("added_tension", m.added_tension());
+    modes.add(std::move(o.put("participation", m.participation()).put("effective_mass", m.effective_mass())));
+  }
+  for (const auto& q : r.resonances) {
+    Json o = Json::object();
+    o.put("kind", to_string(q.kind)).put("condition", q.condition).put("at", q.at).put("detuning", q.detuning);
+    near.add(std::move(o.put("driven", q.driven)));
+  }
+  results.put("chord_tension", r.cable.chord_tension).put("lambda2", r.statics.lambda2);
+  results.put("cable", numbers_json(numbers_of(r))).put("modes", std::move(modes)).put("resonances", std::move(near));
 }
 
 ExitStatus run(const Configuration& c, RunContext& context) {
@@ -289,7 +294,7 @@ ExitStatus run(const Configuration& c, RunContext& context) {
   const auto stations = static_cast<std::size_t>(c.integer("modes.stations"));
   ResultFile file(context.output);
   write_study(file, c);
-  write_cable(file, r);
+  write_numbers(file, "/cable", numbers_of(r));
   write_modes(file, r.modes);
   for (const auto& m : r.modes) write_shape(file, m, stations);
   for (int n = 1; n <= 2; ++n)  // always there: their longitudinal motion is a figure
@@ -297,12 +302,9 @@ ExitStatus run(const Configuration& c, RunContext& context) {
   write_cross_over(file);
   write_forms(file, r, stations);
   write_resonances(file, r);
-  file.attribute("/study", "warnings", context.warnings);
-  file.attribute("/study", "outcome", std::string("complete"));
-  file.flush();
-  if (context.json) fmt::print("{}", json(r));
-  if (!context.quiet) fmt::print(stderr, "{}", text(r));
-  return ExitStatus::ok;
+  put_modes(context.report, r);
+  context.print(text(r));
+  return finish(file, context, ExitStatus::ok, {"all modes computed"});
 }
 
 }  // namespace

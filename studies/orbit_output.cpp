@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <memory>
 #include <numbers>
 
 #include "core/parallel.hpp"
@@ -73,11 +74,38 @@ double farthest(const Eigen::VectorXcd& from, const Eigen::VectorXcd& to) {
 
 }  // namespace
 
-double peak(const HarmonicBalance& hb, In u, int coordinate) {
+Extremes extremes(const HarmonicBalance& hb, In u, int coordinate) {
   Vector q(samples);
-  for (int m = 0; m < samples; ++m) q[m] = std::abs(displacement(hb, u, coordinate, m));
-  return top_of_samples(q);
+  for (int m = 0; m < samples; ++m) q[m] = displacement(hb, u, coordinate, m);
+  const double highest = top_of_samples(q), lowest = -top_of_samples(-q);
+  return {highest, lowest};
 }
+
+double peak(const HarmonicBalance& hb, In u, int coordinate) { return extremes(hb, u, coordinate).largest(); }
+
+namespace {
+
+// Extremes of every coordinate of the point last asked about: three columns want them, one after the other.
+class ExtremesOfPoint {
+ public:
+  explicit ExtremesOfPoint(const OrbitBranches& orbits) : orbits_(orbits) {}
+  const Extremes& at(In u, int coordinate) {
+    if (point_.size() != u.size() || point_ != u) {
+      const HarmonicBalance& hb = orbits_.balance_of(u);
+      point_ = u;
+      all_.clear();
+      for (int i = 0; i < hb.coordinates(); ++i) all_.push_back(extremes(hb, u, i));
+    }
+    return all_[static_cast<std::size_t>(coordinate)];
+  }
+
+ private:
+  const OrbitBranches& orbits_;
+  Vector point_;
+  std::vector<Extremes> all_;
+};
+
+}  // namespace
 
 BranchOutput orbit_output(const OrbitBranches& orbits, const std::string& parameter, int harmonics) {
   BranchOutput out;
@@ -87,11 +115,16 @@ BranchOutput orbit_output(const OrbitBranches& orbits, const std::string& parame
   out.multipliers = true;
   out.period_of = [&orbits](In u) { return static_cast<double>(orbits.balance_of(u).nu()); };
   const int finest = orbits.period(orbits.levels() - 1);
+  const auto at = std::make_shared<ExtremesOfPoint>(orbits);
   for (std::size_t c = 0; c < source.coordinates.size(); ++c) {
     const int i = static_cast<int>(c);
     const std::string& q = source.coordinates[c];
-    out.columns.push_back(
-        {q + "_max", source.length_unit, "largest |" + q + "| over the period", [&orbits, i](In u) { return peak(orbits.balance_of(u), u, i); }});
+    const auto add = [&](const char* name, const std::string& description, auto value) {
+      out.columns.push_back({q + name, source.length_unit, description, [at, i, value](In u) { return value(at->at(u, i)); }});
+    };
+    add("_max", "largest |" + q + "| over the period", [](const Extremes& e) { return e.largest(); });
+    add("_highest", "largest " + q + " over the period, with its sign", [](const Extremes& e) { return e.highest; });
+    add("_lowest", "least " + q + " over the period, with its sign", [](const Extremes& e) { return e.lowest; });
     for (int h = 0; h <= harmonics * finest; ++h) {
       const double k = static_cast<double>(h) / finest;
       const std::string name = harmonic_name(q, k);

@@ -2,14 +2,23 @@
 /// What a person reads of a periodic motion: amplitudes per coordinate and harmonic, peak displacement; motions over time; and how well an
 /// integration agrees.
 
+#include <algorithm>
+
 #include "studies/branch_output.hpp"
 #include "studies/orbit_branches.hpp"
 
 namespace whirl::studies {
 
-/// Columns q<i>_h<k> (k in multiples of the excitation frequency, up to `harmonics`), their phases, q<i>_max, and derived frequencies. `orbits` must
-/// live on.
+/// Columns q<i>_h<k> (k in multiples of the excitation frequency, up to `harmonics`), their phases, q<i>_max (of |q|), q<i>_highest and q<i>_lowest
+/// (with sign), and derived frequencies. `orbits` must live on.
 BranchOutput orbit_output(const OrbitBranches& orbits, const std::string& parameter, int harmonics);
+
+/// Largest and least q_i over the period.
+struct Extremes {
+  double highest, lowest;
+  double largest() const { return std::max(highest, -lowest); }  ///< of |q_i|
+};
+Extremes extremes(const models::HarmonicBalance& hb, In u, int coordinate);
 
 /// Largest |q_i| over the period.
 double peak(const models::HarmonicBalance& hb, In u, int coordinate);

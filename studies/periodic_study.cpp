@@ -218,14 +218,8 @@ std::vector<std::string> verify(const Setup& s, const OrbitBranches& orbits, Res
   int number = 0;
   for (const auto& check : checks) write_orbit(file, fmt::format("/verification/motions/{:03}", ++number), orbits, check.motion);
   file.flush();
-  if (!context.quiet) fmt::print(stderr, "\n{}", checks_text(orbits, checks, s.parameter));
+  context.print("\n" + checks_text(orbits, checks, s.parameter));
   return contradictions(checks, s.parameter, 1e3 * std::max(s.orbits.truncation_tolerance, 1e-9));
-}
-
-// A JSON object with one more member at its end.
-std::string with_member(std::string object, const std::string& key, const std::string& value) {
-  object.erase(object.find_last_not_of("}\n") + 1);
-  return fmt::format("{},\n  \"{}\": {}\n}}\n", object, key, value);
 }
 
 ExitStatus run(const Configuration& c, RunContext& context) {
@@ -233,7 +227,7 @@ ExitStatus run(const Configuration& c, RunContext& context) {
   for (const auto& w : check_forced_system(c)) context.warn(w);
   ResultFile file(context.output);
   write_study(file, c);
-  write_forced_system(file, c);
+  write_forced_system(file, context, c);
   OrbitBranches orbits(forced_system_of(c, {s.parameter}), s.orbits, context);
   const BranchOutput output = orbit_output(orbits, s.parameter, s.shown_harmonics);
   orbits.on_branch([&](const Branch& b, int level, double error) {
@@ -250,26 +244,22 @@ ExitStatus run(const Configuration& c, RunContext& context) {
   if (branches.empty()) context.warn("no periodic motion was found in the range");
   output.write_special_points(file, branches);
   file.flush();
-  if (!context.quiet) fmt::print(stderr, "{}", output.text(branches));
+  output.report(context.report, branches);
+  context.print(output.text(branches));
   const AttractorCheck& settled = orbits.check();
   settled.write(file, s.parameter);
   file.flush();
+  context.report.put("attractor_check", settled.json(s.parameter));
   if (const std::string text = settled.text(s.parameter); !text.empty()) {
     if (!settled.complete()) context.warn(text);
-    else if (!context.quiet) fmt::print(stderr, "{}\n", text);
+    else context.print(text + "\n");
   }
   const auto failures = interrupted ? std::vector<std::string>{} : verify(s, orbits, file, context);
-  std::string chart_json;
   if (!s.second.empty() && !interrupted) {
     const FollowedChart chart = follow_all(c, s, orbits, file, context);
     chart.output.write_points(file, "/curve_points", chart.curves);
-    chart_json = fmt::format(",\n  \"curve_points\": [{}\n  ],\n  \"curves\": [{}\n  ]", chart.output.points_json(chart.curves),
-                             ChartOutput::curves_json(chart.curves));
-    if (!context.quiet) fmt::print(stderr, "\n{}", chart.output.text(chart.curves));
-  }
-  if (context.json) {
-    std::string all = with_member(output.json(branches), "attractor_check", settled.json(s.parameter));
-    fmt::print("{}", all.insert(all.rfind("\n}"), chart_json));
+    context.report.put("curve_points", chart.output.points_json(chart.curves)).put("curves", ChartOutput::curves_json(chart.curves));
+    context.print("\n" + chart.output.text(chart.curves));
   }
   return finish(file, context, branches, failures);
 }

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <map>
 #include <mutex>
+#include <set>
 #include <stdexcept>
 
 #include "studies/append_file.hpp"
@@ -197,6 +198,10 @@ void check_rows(const std::string& group, const std::vector<Column>& columns, co
   const auto same = [&](const auto& column) { return column.values.size() == rows; };
   if (!std::all_of(columns.begin(), columns.end(), same) || !std::all_of(text_columns.begin(), text_columns.end(), same))
     throw std::invalid_argument(fmt::format("table {}: columns of unequal length", group));
+  std::set<std::string> names;  // a second column of a name would replace the first without a word
+  const auto fresh = [&](const auto& column) { return names.insert(column.name).second; };
+  if (!std::all_of(columns.begin(), columns.end(), fresh) || !std::all_of(text_columns.begin(), text_columns.end(), fresh))
+    throw std::invalid_argument(fmt::format("table {}: two columns of one name", group));
 }
 
 TextAttributes meaning(const Column& c) { return {{"units", c.unit}, {"description", c.description}}; }

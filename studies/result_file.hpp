@@ -3,7 +3,8 @@
 ///
 /// Columns keep the order in which they were written. `flush()` after each completed branch: nothing of the file's structure reaches the disk
 /// between flushes, so a run killed later leaves the state of the last one. A file that cannot be created or read throws InputError (one line); a
-/// write that fails (disk full) throws std::runtime_error and leaves the last flushed state; columns of unequal length throw std::invalid_argument.
+/// write that fails (disk full) throws std::runtime_error and leaves the last flushed state; columns of unequal length or of one name throw
+/// std::invalid_argument.
 ///
 ///     ResultFile out("result.h5");
 ///     out.attribute("/study", "kind", "superharmonic");
@@ -87,7 +88,10 @@ class ResultReader {
   ResultReader& operator=(ResultReader&&) noexcept;
 
   std::vector<std::string> tables() const;                                ///< "/branches/IP1", ...: groups with at least one 1-D dataset
+  std::vector<std::string> groups() const;                                ///< all of them, "/" first
   std::vector<std::string> column_names(const std::string& group) const;  ///< in the order written, texts among numbers
+  std::vector<std::string> scalar_names(const std::string& group) const;  ///< numbers that stand alone
+  std::vector<std::string> text_names(const std::string& group) const;    ///< texts that stand alone
   Table table(const std::string& group) const;
   Column column(const std::string& group, const std::string& name) const;
   TextColumn text_column(const std::string& group, const std::string& name) const;
@@ -98,6 +102,7 @@ class ResultReader {
   std::vector<std::string> children(const std::string& group) const;
 
   std::vector<std::string> attribute_names(const std::string& object) const;
+  bool holds_numbers(const std::string& object, const std::string& attribute) const;
   double number_attribute(const std::string& object, const std::string& name) const;
   std::string text_attribute(const std::string& object, const std::string& name) const;
   std::vector<double> numbers_attribute(const std::string& object, const std::string& name) const;
@@ -106,6 +111,8 @@ class ResultReader {
   const std::filesystem::path& path() const { return path_; }
 
  private:
+  std::vector<std::string> names_of(const std::string& group, int dimensions, bool numbers, bool texts) const;
+
   std::filesystem::path path_;
   std::unique_ptr<HdfHandle> file_;
 };

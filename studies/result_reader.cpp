@@ -178,15 +178,21 @@ ResultReader::ResultReader(ResultReader&&) noexcept = default;
 ResultReader& ResultReader::operator=(ResultReader&&) noexcept = default;
 
 std::vector<std::string> ResultReader::tables() const {
+  std::vector<std::string> found = groups();
+  std::erase_if(found, [&](const std::string& group) { return column_names(group).empty(); });
+  return found;
+}
+
+std::vector<std::string> ResultReader::groups() const {
   std::vector<std::string> found, open{"/"};
   while (!open.empty()) {
     const std::string group = open.back();
     open.pop_back();
-    if (!column_names(group).empty()) found.push_back(group);
+    found.push_back(group);
     const std::vector<std::string> names = children(group);
     for (auto it = names.rbegin(); it != names.rend(); ++it)
       if (const std::string child = member(group, *it); kind_of(*file_, child) == H5I_GROUP) open.push_back(child);
-    if (found.size() + open.size() > most_groups) refuse(path_, "has groups without end");
+    if (found.size() + open.size() > most_groups) refuse(path_, "has groups without end");  // a link that leads back to its own group
   }
   return found;
 }
@@ -196,15 +202,21 @@ std::vector<std::string> ResultReader::children(const std::string& group) const 
   return members(opened(H5Gopen2(*file_, group.c_str(), H5P_DEFAULT), H5Gclose, "opening " + group));
 }
 
-std::vector<std::string> ResultReader::column_names(const std::string& group) const {
+std::vector<std::string> ResultReader::names_of(const std::string& group, int dimensions, bool numbers, bool texts) const {
   std::vector<std::string> names;
   for (const std::string& name : children(group)) {
     if (kind_of(*file_, member(group, name)) != H5I_DATASET) continue;
     const DataSet data = open_dataset(*file_, member(group, name));
-    if (H5Sget_simple_extent_ndims(data.space) == 1 && content_of(data.type) != Content::other) names.push_back(name);
+    const Content content = content_of(data.type);
+    const bool wanted = content == Content::numbers ? numbers : content != Content::other && texts;
+    if (wanted && H5Sget_simple_extent_ndims(data.space) == dimensions) names.push_back(name);
   }
   return names;
 }
+
+std::vector<std::string> ResultReader::column_names(const std::string& group) const { return names_of(group, 1, true, true); }
+std::vector<std::string> ResultReader::scalar_names(const std::string& group) const { return names_of(group, 0, true, false); }
+std::vector<std::string> ResultReader::text_names(const std::string& group) const { return names_of(group, 0, false, true); }
 
 Table ResultReader::table(const std::string& group) const {
   Table table;
@@ -301,6 +313,10 @@ std::vector<std::string> ResultReader::texts_attribute(const std::string& object
   const auto values = read_attribute(open_object(*file_, object), name, as_texts);
   if (!values) refuse(path_, fmt::format("{} has no attribute {} of texts", object, name));
   return *values;
+}
+
+bool ResultReader::holds_numbers(const std::string& object, const std::string& attribute) const {
+  return has(object) && read_attribute(open_object(*file_, object), attribute, as_numbers).has_value();
 }
 
 double ResultReader::number_attribute(const std::string& object, const std::string& name) const {

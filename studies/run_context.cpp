@@ -103,6 +103,14 @@ void RunContext::warn(const std::string& text) {
   warnings.push_back(text);
 }
 
+void RunContext::print(const std::string& table) {
+  if (quiet) return;
+  progress.clear();
+  std::FILE* const to = json ? stderr : stdout;
+  fmt::print(to, "{}", table);
+  std::fflush(to);  // a reader at the other end of a pipe waits for it
+}
+
 std::string git_hash() { return WHIRL_GIT_HASH; }
 
 std::vector<std::string> library_versions() {

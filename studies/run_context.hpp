@@ -8,6 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "studies/json.hpp"
+
 namespace whirl::studies {
 
 /// Set by the SIGINT handler; long loops look at it.
@@ -33,11 +35,13 @@ enum class ExitStatus { ok = 0, numerical_failure = 1, bad_input = 2, stopped_by
 
 struct RunContext {
   std::filesystem::path output;  ///< result file
-  bool json = false;             ///< special points and branches as JSON on standard output
-  bool quiet = false;            ///< no table on standard error
+  bool json = false;             ///< the report as JSON on standard output; tables go to standard error then
+  bool quiet = false;            ///< no tables
   Progress progress;
   std::vector<std::string> warnings;  ///< printed, and written into the result file
+  Json report = Json::object();       ///< what `--json` prints once the run is over
   void warn(const std::string& text);
+  void print(const std::string& table);  ///< on standard output, unless quiet
 };
 
 std::string version_text();  ///< "whirl 0.1.0 (abcdef0), SUNDIALS 6.4.1, ..."

@@ -223,9 +223,10 @@ void explore(const Configuration& c, const Setup& s, Network& net, RunContext& c
 
 // ---- verification ----------------------------------------------------------------------------------------------------------
 
-void run_verification(const Configuration& c, const Setup& s, const Network& net, ResultFile& file, RunContext& context) {
+// Integrated runs beside the branches; what did not settle.
+std::vector<std::string> run_verification(const Configuration& c, const Setup& s, const Network& net, ResultFile& file, RunContext& context) {
   const auto& omegas = c.numbers("verification.omega");
-  if (omegas.empty()) return;
+  if (omegas.empty()) return {};
   IntegrationOptions o;
   o.perturbation = c.number("verification.perturbation");
   o.starts = starts_of(c, "verification.starts", s.forced.coordinates.size());
@@ -242,7 +243,9 @@ void run_verification(const Configuration& c, const Setup& s, const Network& net
   if (!runs.empty()) write_integrated(file, s.forced, s.averaged, runs);
   file.flush();
   context.progress.clear();
-  if (!context.quiet && !runs.empty()) fmt::print(stderr, "\n{}", integrated_text(s.forced, s.averaged, runs));
+  if (!runs.empty()) context.print("\n" + integrated_text(s.forced, s.averaged, runs));
+  report_integrated(context.report, s.forced, s.averaged, runs);
+  return not_settled(runs);
 }
 
 ExitStatus run(const Configuration& c, RunContext& context) {
@@ -251,7 +254,7 @@ ExitStatus run(const Configuration& c, RunContext& context) {
   const BranchOutput output = output_of(*s);
   ResultFile file(context.output);
   write_study(file, c);
-  write_forced_system(file, c);
+  write_forced_system(file, context, c);
   file.attribute("/study", "mirrored", mirrored_coordinates(s->forced));
   file.attribute("/study", "nu", static_cast<double>(s->averaged.ansatz.nu));
   Network net(*s->averaged.flow, s->network);
@@ -269,14 +272,15 @@ ExitStatus run(const Configuration& c, RunContext& context) {
   output.write_special_points(file, branches);
   file.flush();
   context.progress.clear();
-  if (context.json) fmt::print("{}", output.json(branches));
-  if (!context.quiet) fmt::print(stderr, "{}", output.text(branches));
+  output.report(context.report, branches);
+  context.print(output.text(branches));
+  std::vector<std::string> failures;
   if (c.flag("verification.enabled") && !interrupted) {
-    if (s->parameter == "omega") run_verification(c, *s, net, file, context);
+    if (s->parameter == "omega") failures = run_verification(c, *s, net, file, context);
     else if (!c.numbers("verification.omega").empty())
       context.warn("verification compares at frequencies: it is left out because continuation.parameter is not omega");
   }
-  return finish(file, context, branches);
+  return finish(file, context, branches, failures);
 }
 
 }  // namespace

@@ -236,6 +236,32 @@ void write_integrated(ResultFile& file, const ForcedSystem& forced, const Averag
     if (runs[i].motion.record.cols() > 0) write_motion(file, forced, runs[i], i + 1);
 }
 
+std::vector<std::string> not_settled(const std::vector<IntegratedRun>& runs) {
+  std::vector<std::string> failures;
+  if (interrupted) return failures;
+  for (const auto& r : runs)
+    if (r.motion.kind == MotionKind::unsettled || r.motion.kind == MotionKind::failed || r.motion.kind == MotionKind::diverging)
+      failures.push_back(fmt::format("omega = {:g}, {}: {}", r.omega, r.start_name, r.motion.why));
+  return failures;
+}
+
+void report_integrated(Json& results, const ForcedSystem& forced, const AveragedEquations& averaged, const std::vector<IntegratedRun>& runs) {
+  const Ansatz& a = averaged.ansatz;
+  Json rows = Json::array();
+  for (const auto& r : runs) {
+    Json o = Json::object();
+    o.put("omega", r.omega).put("start", r.start_name).put("motion", to_string(r.motion.kind)).put("period", r.motion.multiple);
+    o.put("branch", r.averaged ? Json(r.averaged->branch) : Json()).put("why", r.motion.why);
+    for (std::size_t i = 0; i < forced.coordinates.size(); ++i)
+      for (int k = 0; k <= a.highest(); ++k) {
+        const std::string name = harmonic_name(forced.coordinates[i], static_cast<double>(k) / a.nu);
+        o.put(name, r.motion.record.cols() > 0 ? amplitude_of(a, r.motion, static_cast<int>(i), k) : std::nan(""));
+      }
+    rows.add(std::move(o));
+  }
+  results.put("verification", std::move(rows));
+}
+
 std::string integrated_text(const ForcedSystem& forced, const AveragedEquations& averaged, const std::vector<IntegratedRun>& runs) {
   const Ansatz& a = averaged.ansatz;
   const auto averaged_amplitude = [&](const IntegratedRun& r, int i, int k) { return std::abs(amplitude(a, r.averaged->u.head(a.size()), i, k)); };

@@ -46,6 +46,10 @@ void write_averaged(ResultFile& file, const ForcedSystem& forced, const Averaged
                     const std::vector<std::vector<AveragedSolution>>& solutions);
 /// /verification/runs, series, spectra, transients.
 void write_integrated(ResultFile& file, const ForcedSystem& forced, const AveragedEquations& averaged, const std::vector<IntegratedRun>& runs);
+/// A line for each run that did not settle or could not be integrated.
+std::vector<std::string> not_settled(const std::vector<IntegratedRun>& runs);
+/// "verification": a row a run.
+void report_integrated(Json& results, const ForcedSystem& forced, const AveragedEquations& averaged, const std::vector<IntegratedRun>& runs);
 std::string integrated_text(const ForcedSystem& forced, const AveragedEquations& averaged, const std::vector<IntegratedRun>& runs);
 
 }  // namespace whirl::studies

@@ -135,16 +135,21 @@ void explore(const SuperharmonicFlow& flow, const Setup& s, Network& net, RunCon
   if (net.branches().empty()) context.warn("no steady state was found in the range");
 }
 
-void write_cable(ResultFile& file, const Setup& s) {
-  const auto p = parabola(s.stay.cable);
-  const auto m = modes(s.stay.cable);
-  const auto k = modal_coefficients(m, s.flow.coefficients);
-  write_cable_numbers(file, s.stay.cable);
-  (void)p;
-  const std::pair<const char*, double> numbers[] = {{"m1", k.m1}, {"m2", k.m2}, {"a1", k.a1}, {"a2", k.a2}, {"c1", k.c1}, {"c2", k.c2},
-                                                    {"d1", k.d1}, {"d2", k.d2}, {"d3", k.d3}, {"C1", k.C1}, {"C2", k.C2}, {"C3", k.C3},
-                                                    {"C4", k.C4}, {"G1", k.G1}, {"G2", k.G2}, {"G3", k.G3}, {"G4", k.G4}};
-  for (const auto& [name, value] : numbers) file.scalar("/cable/coefficients", name, value, "-", "modal coefficient, Nielsen & Kirkegaard eq. (24)");
+void write_cable(ResultFile& file, RunContext& context, const Setup& s) {
+  const auto k = modal_coefficients(modes(s.stay.cable), s.flow.coefficients);
+  write_cable_numbers(file, context, s.stay.cable);
+  const std::pair<const char*, double> coefficients[] = {{"m1", k.m1}, {"m2", k.m2}, {"a1", k.a1}, {"a2", k.a2}, {"c1", k.c1}, {"c2", k.c2},
+                                                         {"d1", k.d1}, {"d2", k.d2}, {"d3", k.d3}, {"C1", k.C1}, {"C2", k.C2}, {"C3", k.C3},
+                                                         {"C4", k.C4}, {"G1", k.G1}, {"G2", k.G2}, {"G3", k.G3}, {"G4", k.G4}};
+  Numbers numbers;
+  std::string line = "modal coefficients:";
+  for (const auto& [name, value] : coefficients) {
+    numbers.push_back({name, "-", "modal coefficient, Nielsen & Kirkegaard eq. (24)", value});
+    line += fmt::format(" {} {:.6g}", name, value);
+  }
+  write_numbers(file, "/cable/coefficients", numbers);
+  context.report.put("coefficients", numbers_json(numbers));
+  context.print(line + "\n");
 }
 
 VerificationOptions verification_of(const Configuration& c, const Setup& s) {
@@ -159,8 +164,9 @@ VerificationOptions verification_of(const Configuration& c, const Setup& s) {
   return o;
 }
 
-void run_verification(const Configuration& c, const Setup& s, const SuperharmonicFlow& flow, const Network& net, ResultFile& file,
-                      RunContext& context) {
+// Integrated runs and sweeps beside the branches; what did not settle.
+std::vector<std::string> run_verification(const Configuration& c, const Setup& s, const SuperharmonicFlow& flow, const Network& net, ResultFile& file,
+                                          RunContext& context) {
   const VerificationOptions o = verification_of(c, s);
   const auto omegas = c.has("verification.omega") ? c.numbers("verification.omega") : std::vector<double>{};
   std::vector<std::vector<AveragedState>> states;
@@ -176,9 +182,11 @@ void run_verification(const Configuration& c, const Setup& s, const Superharmoni
   if (!runs.empty()) write_runs(file, runs, flow, s.flow.order);
   file.flush();
   context.progress.clear();
-  if (!context.quiet && !runs.empty()) fmt::print(stderr, "\n{}", runs_text(runs, flow, s.flow.order));
+  if (!runs.empty()) context.print("\n" + runs_text(runs, flow, s.flow.order));
+  std::vector<std::string> failures = not_settled(runs);
+  report_runs(context.report, runs, flow, s.flow.order);
   const int points = static_cast<int>(c.integer("verification.sweep_points"));
-  if (points < 2 || interrupted) return;
+  if (points < 2 || interrupted) return failures;
   std::vector<double> up, down;
   for (int i = 0; i < points; ++i) up.push_back(s.network.walk.lower + (s.network.walk.upper - s.network.walk.lower) * i / (points - 1));
   down.assign(up.rbegin(), up.rend());
@@ -187,12 +195,17 @@ void run_verification(const Configuration& c, const Setup& s, const Superharmoni
   write_sweep(file, "/verification/sweep_up", swept[0]);
   write_sweep(file, "/verification/sweep_down", swept[1]);
   file.flush();
+  for (const int way : {0, 1})
+    if (!interrupted && static_cast<int>(swept[way].size()) < points)
+      failures.push_back(
+          fmt::format("sweep {} ended early at {:g} rad/s: {}", way == 0 ? "up" : "down", swept[way].back().omega, swept[way].back().motion.why));
+  return failures;
 }
 
-// Stable whirling orbits at one frequency for several damping pairs, averaged and integrated.
-void run_orbits(const Configuration& c, const Setup& s, ResultFile& file, RunContext& context) {
+// Stable whirling orbits at one frequency for several damping pairs, averaged and integrated; what did not settle.
+std::vector<std::string> run_orbits(const Configuration& c, const Setup& s, ResultFile& file, RunContext& context) {
   const auto& pairs = c.numbers("orbits.damping_pairs");
-  if (pairs.empty()) return;
+  if (pairs.empty()) return {};
   const double omega = c.number("orbits.omega");
   struct Case {
     std::string group;
@@ -237,6 +250,7 @@ void run_orbits(const Configuration& c, const Setup& s, ResultFile& file, RunCon
              settle(nielsen_kirkegaard(stay, stay_model(stay.cable, s.flow.coefficients), s.terms), y, o.settle)};
     context.progress.show(fmt::format("orbits: damping {:g}, {:g}", pairs[2 * i], pairs[2 * i + 1]));
   });
+  std::vector<std::string> failures;
   for (std::size_t i = 0; i < cases.size(); ++i) {
     const Case& k = cases[i];
     if (!k.flow) continue;
@@ -245,8 +259,11 @@ void run_orbits(const Configuration& c, const Setup& s, ResultFile& file, RunCon
     file.attribute(k.group, "damping_out_of_plane", pairs[2 * i]);
     file.attribute(k.group, "damping_in_plane", pairs[2 * i + 1]);
     file.attribute(k.group, "omega", omega);
+    for (const auto& failure : not_settled({k.run}))
+      failures.push_back(fmt::format("orbits, damping {:g}, {:g}: {}", pairs[2 * i], pairs[2 * i + 1], failure));
   }
   file.flush();
+  return failures;
 }
 
 ExitStatus run(const Configuration& c, RunContext& context) {
@@ -256,7 +273,7 @@ ExitStatus run(const Configuration& c, RunContext& context) {
   const BranchOutput output = output_of(flow, s);
   ResultFile file(context.output);
   write_study(file, c);
-  write_cable(file, s);
+  write_cable(file, context, s);
   Network net(flow, s.network);
   net.set_namer([](const Branch& b) { return b.active_reflections.empty() ? "W" : "IP"; });
   net.set_observer([&](const Branch& b, int i) {
@@ -271,15 +288,17 @@ ExitStatus run(const Configuration& c, RunContext& context) {
   output.write_special_points(file, net.branches());
   file.flush();
   context.progress.clear();
-  if (context.json) fmt::print("{}", output.json(net.branches()));
-  if (!context.quiet) fmt::print(stderr, "{}", output.text(net.branches()));
+  output.report(context.report, net.branches());
+  context.print(output.text(net.branches()));
+  std::vector<std::string> failures;
   if (c.flag("verification.enabled") && !interrupted) {
-    if (s.parameter == "omega") run_verification(c, s, flow, net, file, context);
+    if (s.parameter == "omega") failures = run_verification(c, s, flow, net, file, context);
     else if (c.has("verification.omega"))
       context.warn("verification compares at frequencies: it is left out because continuation.parameter is not omega");
-    if (!interrupted) run_orbits(c, s, file, context);
+    if (!interrupted)
+      for (auto& failure : run_orbits(c, s, file, context)) failures.push_back(std::move(failure));
   }
-  return finish(file, context, net.branches());
+  return finish(file, context, net.branches(), failures);
 }
 
 }  // namespace

@@ -193,7 +193,7 @@ ExitStatus run(const Configuration& c, RunContext& context) {
   const auto f = s.source->problem({s.first});
   ResultFile file(context.output);
   write_study(file, c);
-  s.source->write(file);
+  s.source->write(file, context);
   const Observer observer = [](const Branch&, int) { return !interrupted; };
   Network net(*f, s.network);
   net.set_namer(s.source->namer());
@@ -208,10 +208,8 @@ ExitStatus run(const Configuration& c, RunContext& context) {
   context.progress.clear();
   const auto& curves = charts.curves();
   charts.output().write_points(file, "/special_points", curves);
-  if (context.json)
-    fmt::print("{{\n  \"special_points\": [{}\n  ],\n  \"curves\": [{}\n  ]\n}}\n", charts.output().points_json(curves),
-               ChartOutput::curves_json(curves));
-  if (!context.quiet) fmt::print(stderr, "{}", charts.output().text(curves));
+  context.report.put("special_points", charts.output().points_json(curves)).put("curves", ChartOutput::curves_json(curves));
+  context.print(charts.output().text(curves));
   if (curves.empty()) {
     const auto& walk = s.network.walk;
     context.warn(fmt::format("no {} with {} in [{:g}, {:g}]: no chart",

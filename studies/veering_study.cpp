@@ -202,15 +202,17 @@ std::string text(const Setup& s, const std::vector<Found>& found) {
   return out;
 }
 
-std::string json(const Setup& s, const std::vector<Found>& found) {
+Json json(const Setup& s, const std::vector<Found>& found) {
   const double unit = frequency_unit(s.cable);
-  std::string rows;
-  for (const Found& f : found)
-    rows += fmt::format(
-        R"({}    {{"type": "{}", "height_over_span": {:.17g}, "lower_mode": {}, "flexibility": {:.17g}, "irvine_lambda2": {:.17g}, "omega_lower": {:.17g}, "omega_upper": {:.17g}, "gap": {:.17g}}})",
-        rows.empty() ? "\n" : ",\n", f.approach.crossing ? "crossing" : "veering", f.height, f.approach.lower_mode, f.approach.kappa, f.lambda2,
-        unit * f.approach.lower, unit * f.approach.upper, f.approach.crossing ? 0.0 : f.approach.gap);
-  return fmt::format("{{\n  \"special_points\": [{}\n  ]\n}}\n", rows);
+  Json rows = Json::array();
+  for (const Found& f : found) {
+    Json o = Json::object();
+    o.put("type", f.approach.crossing ? "crossing" : "veering").put("height_over_span", f.height).put("lower_mode", f.approach.lower_mode);
+    o.put("flexibility", f.approach.kappa).put("irvine_lambda2", f.lambda2);
+    o.put("omega_lower", unit * f.approach.lower).put("omega_upper", unit * f.approach.upper);
+    rows.add(std::move(o.put("gap", f.approach.crossing ? 0.0 : f.approach.gap)));
+  }
+  return rows;
 }
 
 ExitStatus run(const Configuration& c, RunContext& context) {
@@ -218,7 +220,7 @@ ExitStatus run(const Configuration& c, RunContext& context) {
   for (const auto& w : check(c)) context.warn(w);
   ResultFile file(context.output);
   write_study(file, c);
-  write_hanging_cable(file, s.cable);
+  write_hanging_cable(file, context, s.cable);
   std::vector<std::string> failures;
   std::vector<Found> found;
   for (std::size_t i = 0; i < s.shapes.size() && !interrupted; ++i) {
@@ -233,8 +235,8 @@ ExitStatus run(const Configuration& c, RunContext& context) {
   }
   context.progress.clear();
   write_approaches(file, s, found);
-  if (context.json) fmt::print("{}", json(s, found));
-  if (!context.quiet) fmt::print(stderr, "{}", text(s, found));
+  context.report.put("special_points", json(s, found));
+  context.print(text(s, found));
   return finish_tables(file, context, failures);
 }
 

@@ -104,13 +104,22 @@ std::vector<VerificationRun> sweep(const std::vector<double>& omegas, const Veri
     auto settle_options = o.settle;
     settle_options.interrupted = &interrupted;
     VerificationRun run{omega, y, "sweep", std::nullopt, models::settle(system_at(o, omega), y, settle_options)};
-    if (run.motion.kind == MotionKind::failed) break;
     y = run.motion.state;
     y[0] += o.perturbation;
     runs.push_back(std::move(run));
+    if (runs.back().motion.kind == MotionKind::failed) break;
     context.progress.show(fmt::format("sweep: omega = {:.4f} rad/s", omega));
   }
   return runs;
+}
+
+std::vector<std::string> not_settled(const std::vector<VerificationRun>& runs) {
+  std::vector<std::string> failures;
+  if (interrupted) return failures;
+  for (const auto& r : runs)
+    if (r.motion.kind == MotionKind::unsettled || r.motion.kind == MotionKind::failed || r.motion.kind == MotionKind::diverging)
+      failures.push_back(fmt::format("omega = {:g}, {}: {}", r.omega, r.start_name, r.motion.why));
+  return failures;
 }
 
 void write_averaged_orbit(ResultFile& file, const std::string& group, const models::SuperharmonicFlow& flow, const AveragedState& state) {
@@ -194,6 +203,21 @@ void write_sweep(ResultFile& file, const std::string& group, const std::vector<V
   table.push_back(column_of(runs, "multiple", "-", "period of the motion in excitation periods, 0 if not periodic",
                             [](const auto& r) { return r.motion.multiple; }));
   file.table(group, table, {kinds_of(runs)});
+}
+
+void report_runs(Json& results, const std::vector<VerificationRun>& runs, const models::SuperharmonicFlow& flow, int order) {
+  Json rows = Json::array();
+  for (const auto& r : runs) {
+    Json o = Json::object();
+    o.put("omega", r.omega).put("start", r.start_name).put("motion", to_string(r.motion.kind)).put("period", r.motion.multiple);
+    o.put("branch", r.averaged ? Json(r.averaged->branch) : Json()).put("why", r.motion.why);
+    const auto integrated = [&](int i) { return r.motion.record.cols() > 0 ? std::abs(r.motion.harmonic(i, order)) : std::nan(""); };
+    const auto averaged = r.averaged ? flow.observe(r.averaged->u) : models::Superharmonic{};
+    o.put("A", integrated(0)).put("B", integrated(1));
+    o.put("averaged_A", r.averaged ? Json(averaged.A) : Json()).put("averaged_B", r.averaged ? Json(averaged.B) : Json());
+    rows.add(std::move(o));
+  }
+  results.put("verification", std::move(rows));
 }
 
 std::string runs_text(const std::vector<VerificationRun>& runs, const models::SuperharmonicFlow& flow, int order) {

@@ -42,12 +42,17 @@ std::vector<VerificationRun> verify(const models::SuperharmonicFlow& flow, const
 /// Steady motions while the frequency rises or falls from point to point, each starting where the one before ended.
 std::vector<VerificationRun> sweep(const std::vector<double>& omegas, const VerificationOptions& options, RunContext& context);
 
+/// A line for each run that did not settle or could not be integrated.
+std::vector<std::string> not_settled(const std::vector<VerificationRun>& runs);
+
 void write_runs(ResultFile& file, const std::vector<VerificationRun>& runs, const models::SuperharmonicFlow& flow, int order);
 void write_sweep(ResultFile& file, const std::string& group, const std::vector<VerificationRun>& runs);
 /// One averaged orbit over a period as t, q1, q2.
 void write_averaged_orbit(ResultFile& file, const std::string& group, const models::SuperharmonicFlow& flow, const AveragedState& state);
 /// The recorded motion as t, q1, q2 and its harmonics.
 void write_motion(ResultFile& file, const std::string& series_group, const std::string& spectrum_group, const VerificationRun& run);
+/// "verification": a row a run.
+void report_runs(Json& results, const std::vector<VerificationRun>& runs, const models::SuperharmonicFlow& flow, int order);
 std::string runs_text(const std::vector<VerificationRun>& runs, const models::SuperharmonicFlow& flow, int order);
 
 }  // namespace whirl::studies

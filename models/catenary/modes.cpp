@@ -189,7 +189,7 @@ const char* to_string(ModeKind kind) {
 ModeKind kind_of(double share) { return share < 0.05 ? ModeKind::symmetric : share > 0.95 ? ModeKind::antisymmetric : ModeKind::hybrid; }
 
 void ModeOptions::validate() const {
-  if (count < 1 || count > 400) throw std::invalid_argument(fmt::format("the number of modes must lie in [1, 400], got {}", count));
+  if (count < 1 || count > most) throw std::invalid_argument(fmt::format("the number of modes must lie in [1, {}], got {}", most, count));
   if (functions < 0 || functions > 2000) throw std::invalid_argument(fmt::format("the number of functions must lie in [0, 2000], got {}", functions));
 }
 

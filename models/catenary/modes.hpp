@@ -33,6 +33,7 @@ const char* to_string(ModeKind kind);
 ModeKind kind_of(double odd_share);
 
 struct ModeOptions {
+  static constexpr int most = 2000;  ///< modes of a set: more than lie below `highest_frequency` of a taut or a sagging cable
   int count = 8;
   int functions = 0;   ///< 0: as many as the highest mode needs
   bool shapes = true;  ///< fields too

@@ -70,7 +70,7 @@ inline Ran interrupted_program(const Folder& f, const std::string& arguments, co
   }
   int code = 0;
   const auto pause = [](std::chrono::milliseconds t) { std::this_thread::sleep_for(t); };
-  for (int i = 0; i < 12000 && slurp(err).find(text) == std::string::npos; ++i) {
+  for (int i = 0; i < 12000 && (slurp(out) + slurp(err)).find(text) == std::string::npos; ++i) {
     if (::waitpid(child, &code, WNOHANG) == child) return {WEXITSTATUS(code), slurp(out), slurp(err)};
     pause(std::chrono::milliseconds(10));
   }

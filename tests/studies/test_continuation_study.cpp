@@ -148,12 +148,12 @@ initial = [0.0]
 parameter = "mu"
 range = [-1.0, 1.0]
 )toml";
-  CHECK(f.run_text(text).err.find("isola") == std::string::npos);
+  CHECK(f.run_text(text).out.find("isola") == std::string::npos);
   const Ran r = f.run_text(text, "--json --set continuation.deflate_at=[0.0]");
   CHECK(r.status == 0);
   CHECK(r.err.find(", an isola, born at deflation at mu = 0") != std::string::npos);
   CHECK(r.out.find("\"isola\": true") != std::string::npos);
-  CHECK(f.run_text(text, "--set continuation.seeds=[2.5,0.0]").err.find(", an isola, born at seed 1") != std::string::npos);
+  CHECK(f.run_text(text, "--set continuation.seeds=[2.5,0.0]").out.find(", an isola, born at seed 1") != std::string::npos);
 }
 
 TEST_CASE("bad input to a continuation gives one line", "[continuation_study]") {

@@ -175,5 +175,5 @@ TEST_CASE("progress stays out of a pipe") {
   const Folder f;
   const Ran r = program(f, "run " + oresund + quick + "-o o.h5");
   CHECK(r.err.find('\r') == std::string::npos);
-  CHECK(r.out.empty());
+  CHECK(r.out.find('\r') == std::string::npos);
 }

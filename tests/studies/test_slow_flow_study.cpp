@@ -134,7 +134,7 @@ TEST_CASE("slow-flow study: coordinates by the model's names, starts off the mod
   CHECK(special(file, "BP", "IP1")[0] == Approx(1.0180097647).epsilon(0).margin(1e-9));
   CHECK(file.text_column("/verification/runs", "branch").values.back() == "W1");
   CHECK(file.column("/verification/runs", "q2_h1").values.back() == Approx(0.1819).epsilon(0).margin(1e-4));
-  CHECK(r.err.find("q1_h1 int/avg     q2_h1 int/avg") != std::string::npos);
+  CHECK(r.out.find("q1_h1 int/avg     q2_h1 int/avg") != std::string::npos);
 
   const Ran many = run(f, "--set model.kind=multi-mode --set ansatz.kind=complete --set ansatz.harmonics=3 --set continuation.range=[1.9,1.92]" +
                               branches_only + "-o m.h5");
@@ -143,7 +143,7 @@ TEST_CASE("slow-flow study: coordinates by the model's names, starts off the mod
   const ResultReader modes(f / "m.h5");
   CHECK(modes.text_attribute("/study", "mirrored") == "y1, y2, y3");
   CHECK(modes.column("/branches/IP1", "z1_h1").values.front() > 0.5);
-  CHECK(many.err.find("z1_h1 [m]") != std::string::npos);
+  CHECK(many.out.find("z1_h1 [m]") != std::string::npos);
 }
 
 TEST_CASE("without [ansatz] any number of coordinates is taken", "[slow_flow_study]") {
