@@ -129,7 +129,7 @@ void Meeting::add(EventType type, int block, double frequency, const Vector& fro
       if (type == EventType::branch_point && block == 0) {
         start.point.tangent = Vector::Unit(n_ + 1, n_);
         const HeldProblem held(f_, start.p2);
-        (void)departures(held, start.point);  // tells pitchfork from transcritical
+        name_branch_point(held, start.point);
       }
       starts.push_back(std::move(start));
     }
