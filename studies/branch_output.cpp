@@ -140,7 +140,8 @@ void put_special_points(ResultFile& file, const BranchOutput& out, std::span<con
   add("unstable_before", "-", "unstable directions before, along the branch", [](const SpecialPoint& s) { return s.unstable_before; });
   add("unstable_after", "-", "unstable directions after", [](const SpecialPoint& s) { return s.unstable_after; });
   const char* critical = "Hopf, torus: of the motion that is born, in the slow time or beside the excitation";
-  if (!has_column("frequency")) add("frequency", "rad/s", critical, [](const SpecialPoint& s) { return s.frequency; });
+  const bool in_hertz = std::any_of(columns.begin(), columns.end(), [](const PointColumn& c) { return c.name == "frequency"; });
+  if (!in_hertz) add("frequency", "rad/s", critical, [](const SpecialPoint& s) { return s.frequency; });
   add("critical_frequency", "rad/s", critical, [](const SpecialPoint& s) { return s.frequency; });
   add("coefficient", "-", "normal-form coefficient; NaN if not computed",
       [](const SpecialPoint& s) { return s.has_coefficient ? s.coefficient : std::nan(""); });

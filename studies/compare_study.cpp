@@ -385,7 +385,7 @@ ExitStatus run(const Configuration& c, RunContext& context) {
     if (!interrupted) {
       write_map(file, c, s, rows);
       words = sentence(s, rows);
-      context.print("\n" + words + "\n");
+      context.print(fmt::format("\n{}\n", words));
     }
   }
   context.report.put("points", json(matches)).put("sentence", words);

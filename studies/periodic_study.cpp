@@ -218,7 +218,7 @@ std::vector<std::string> verify(const Setup& s, const OrbitBranches& orbits, Res
   int number = 0;
   for (const auto& check : checks) write_orbit(file, fmt::format("/verification/motions/{:03}", ++number), orbits, check.motion);
   file.flush();
-  context.print("\n" + checks_text(orbits, checks, s.parameter));
+  context.print(fmt::format("\n{}", checks_text(orbits, checks, s.parameter)));
   return contradictions(checks, s.parameter, 1e3 * std::max(s.orbits.truncation_tolerance, 1e-9));
 }
 
@@ -252,14 +252,14 @@ ExitStatus run(const Configuration& c, RunContext& context) {
   context.report.put("attractor_check", settled.json(s.parameter));
   if (const std::string text = settled.text(s.parameter); !text.empty()) {
     if (!settled.complete()) context.warn(text);
-    else context.print(text + "\n");
+    else context.print(fmt::format("{}\n", text));
   }
   const auto failures = interrupted ? std::vector<std::string>{} : verify(s, orbits, file, context);
   if (!s.second.empty() && !interrupted) {
     const FollowedChart chart = follow_all(c, s, orbits, file, context);
     chart.output.write_points(file, "/curve_points", chart.curves);
     context.report.put("curve_points", chart.output.points_json(chart.curves)).put("curves", ChartOutput::curves_json(chart.curves));
-    context.print("\n" + chart.output.text(chart.curves));
+    context.print(fmt::format("\n{}", chart.output.text(chart.curves)));
   }
   return finish(file, context, branches, failures);
 }

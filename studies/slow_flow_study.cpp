@@ -243,7 +243,7 @@ std::vector<std::string> run_verification(const Configuration& c, const Setup& s
   if (!runs.empty()) write_integrated(file, s.forced, s.averaged, runs);
   file.flush();
   context.progress.clear();
-  if (!runs.empty()) context.print("\n" + integrated_text(s.forced, s.averaged, runs));
+  if (!runs.empty()) context.print(fmt::format("\n{}", integrated_text(s.forced, s.averaged, runs)));
   report_integrated(context.report, s.forced, s.averaged, runs);
   return not_settled(runs);
 }

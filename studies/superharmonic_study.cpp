@@ -182,7 +182,7 @@ std::vector<std::string> run_verification(const Configuration& c, const Setup& s
   if (!runs.empty()) write_runs(file, runs, flow, s.flow.order);
   file.flush();
   context.progress.clear();
-  if (!runs.empty()) context.print("\n" + runs_text(runs, flow, s.flow.order));
+  if (!runs.empty()) context.print(fmt::format("\n{}", runs_text(runs, flow, s.flow.order)));
   std::vector<std::string> failures = not_settled(runs);
   report_runs(context.report, runs, flow, s.flow.order);
   const int points = static_cast<int>(c.integer("verification.sweep_points"));
