@@ -1,6 +1,9 @@
 #!/usr/bin/env bash
 # Shared by run-demo and run-tests: Debian packages, configuring, building. Source it at the repository's root, or run it to set up and build.
 
+# Where to build; a relative name counts from the source tree.
+WHIRL_BUILD=${WHIRL_BUILD:-build}
+
 # Names in package lists, comments and empty lines left out.
 packages_in() { sed 's/#.*//' "$@" | tr -s ' \t\n' '\n' | sed '/^$/d'; }
 
@@ -52,6 +55,6 @@ if [ "${BASH_SOURCE[0]}" = "$0" ]; then
   set -euo pipefail
   cd "$(dirname "$0")/.."
   install_packages packages.txt
-  configure build Release
-  build build
+  configure "$WHIRL_BUILD" Release
+  build "$WHIRL_BUILD"
 fi

@@ -6,6 +6,7 @@
 #include <atomic>
 #include <exception>
 #include <mutex>
+#include <system_error>
 #include <thread>
 #include <vector>
 
@@ -28,7 +29,10 @@ void parallel_for(std::size_t count, F&& f, unsigned threads = std::thread::hard
   };
   {
     std::vector<std::jthread> pool;
-    for (std::size_t i = 1; i < std::min<std::size_t>(count, threads > 0 ? threads : 1); ++i) pool.emplace_back(work);
+    try {
+      for (std::size_t i = 1; i < std::min<std::size_t>(count, threads > 0 ? threads : 1); ++i) pool.emplace_back(work);
+    } catch (const std::system_error&) {  // no further thread to be had: those there do all
+    }
     work();
   }
   if (thrown) std::rethrow_exception(thrown);

@@ -220,7 +220,10 @@ void ResultFile::table(const std::string& group, const std::vector<Column>& colu
 void extend_table(ResultFile& file, const std::string& group, const std::vector<Column>& columns, const std::vector<TextColumn>& text_columns) {
   check_rows(group, columns, text_columns);
   write_to(file.path(), [&](OpenResult& result) {
-    for (const Column& c : columns) result.tree.extend_column(group, c.name, c.values, meaning(c));
+    for (auto c = columns.begin(); c != columns.end(); ++c) {  // of two of a name the last counts, as in a table written at once
+      const bool again = std::any_of(c + 1, columns.end(), [&](const Column& later) { return later.name == c->name; });
+      if (!again) result.tree.extend_column(group, c->name, c->values, meaning(*c));
+    }
     for (const TextColumn& c : text_columns) result.tree.extend_column(group, c.name, c.values, meaning(c));
   });
 }

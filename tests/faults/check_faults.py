@@ -25,8 +25,8 @@ KINDS = {
     "continuation": ("two-modes-pitchforks.toml", []),
     "two-parameter": ("oresund-threshold.toml", []),
     "periodic": ("resonance-primary.toml", []),
-    "integrate": ("oresund-integrate.toml", ["sweep.points=3"]),
-    "basins": ("oresund-basins.toml", ["basins.points=[4, 4]"]),
+    "integrate": ("oresund-integrate.toml", ["sweep.range=[]"]),
+    "basins": ("oresund-basins.toml", ["basins.resolution=[5, 5]"]),
 }
 MODES = ("before", "half", "after", "full")
 

@@ -291,10 +291,12 @@ TEST_CASE("a table that is extended reads as one written at once", "[result_file
     CHECK(reader.text_column("/special_points", "branch").values == texts);
     CHECK(reader.column("/special_points", "omega").unit == "rad/s");
   }
+  extend_table(file, "/twice", {{"frequency", "Hz", "", {1.0}}, {"frequency", "rad/s", "", {2.0}}});
   file.table("/special_points", {{"omega", "rad/s", "place", {1.0}}}, {{"branch", "its name", {"B"}}});
   extend_table(file, "/special_points", {{"omega", "rad/s", "place", {2.0}}}, {{"branch", "its name", {"C"}}});
   file.flush();
   CHECK(ResultReader(folder / "r.h5").column("/special_points", "omega").values.back() == 2.0);
+  CHECK(ResultReader(folder / "r.h5").column("/twice", "frequency").values == std::vector<double>{2.0});
 }
 
 TEST_CASE("hundreds of flushes cost what is new", "[result_file]") {
