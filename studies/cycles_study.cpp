@@ -121,7 +121,7 @@ ExitStatus run(const Configuration& c, RunContext& context) {
   output.period_of = [&reader](In u) { return static_cast<double>(reader.multiple(u)); };
   ResultFile file(context.output);
   write_study(file, c);
-  s.source->write(file);
+  s.source->write(file, context);
   const auto observer = [&](const std::string& what) {
     return [&context, &s, what](const Branch& b, int i) {
       if (i % 20 == 0)
@@ -179,8 +179,8 @@ ExitStatus run(const Configuration& c, RunContext& context) {
   context.progress.clear();
   if (cycles.families().empty())
     context.warn("no cycles were found: no Hopf point lies in the range, and nothing was met by integration (cycles.integrate_at)");
-  if (context.json) fmt::print("{}", output.json(all));
-  if (!context.quiet) fmt::print(stderr, "{}", output.text(all));
+  output.report(context.report, all);
+  context.print(output.text(all));
   return finish(file, context, all);
 }
 
