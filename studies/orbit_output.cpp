@@ -124,8 +124,8 @@ BranchOutput orbit_output(const OrbitBranches& orbits, const std::string& parame
       out.columns.push_back({q + name, source.length_unit, description, [at, i, value](In u) { return value(at->at(u, i)); }});
     };
     add("_max", "largest |" + q + "| over the period", [](const Extremes& e) { return e.largest(); });
-    add("_highest", "largest " + q + " over the period, with its sign", [](const Extremes& e) { return e.highest; });
-    add("_lowest", "least " + q + " over the period, with its sign", [](const Extremes& e) { return e.lowest; });
+    add("_crest", "largest " + q + " over the period, with its sign", [](const Extremes& e) { return e.highest; });
+    add("_trough", "least " + q + " over the period, with its sign", [](const Extremes& e) { return e.lowest; });
     for (int h = 0; h <= harmonics * finest; ++h) {
       const double k = static_cast<double>(h) / finest;
       const std::string name = harmonic_name(q, k);
