@@ -158,9 +158,9 @@ std::vector<Column> attractor_columns(const std::vector<AttractorRow>& rows, con
     const std::string& q = s.coordinates[i];
     table.push_back(column_of(rows, q + "_max", s.length_unit, "largest " + q, [k](const auto& r) { return r.motion.record.row(k).maxCoeff(); }));
     table.push_back(column_of(rows, q + "_min", s.length_unit, "least " + q, [k](const auto& r) { return r.motion.record.row(k).minCoeff(); }));
-    table.push_back(column_of(rows, q + "_highest", s.length_unit, "largest " + q + ", named as in periodic results",
+    table.push_back(column_of(rows, q + "_crest", s.length_unit, "largest " + q + ", named as in periodic results",
                               [k](const auto& r) { return r.motion.record.row(k).maxCoeff(); }));
-    table.push_back(column_of(rows, q + "_lowest", s.length_unit, "least " + q + ", named as in periodic results",
+    table.push_back(column_of(rows, q + "_trough", s.length_unit, "least " + q + ", named as in periodic results",
                               [k](const auto& r) { return r.motion.record.row(k).minCoeff(); }));
     for (const auto& [h, name] : harmonics_of(rows))
       table.push_back(column_of(rows, fmt::format("{}_h{}", q, name), s.length_unit, fmt::format("amplitude of {} omega in {}", name, q),
@@ -210,7 +210,7 @@ void put_attractor(Json& o, const AttractorRow& r, const ForcedSystem& s) {
   o.put("second_frequency", r.attractor->second_frequency).put("mirror", r.mirror).put("residual", r.attractor->residual);
   for (std::size_t q = 0; q < s.coordinates.size(); ++q) {
     const auto values = r.motion.record.row(static_cast<Eigen::Index>(q));
-    o.put(s.coordinates[q] + "_highest", values.maxCoeff()).put(s.coordinates[q] + "_lowest", values.minCoeff());
+    o.put(s.coordinates[q] + "_crest", values.maxCoeff()).put(s.coordinates[q] + "_trough", values.minCoeff());
     for (const auto& [h, name] : harmonics_of({r}))
       o.put(fmt::format("{}_h{}", s.coordinates[q], name), std::abs(r.motion.harmonic(static_cast<int>(q), h)));
   }

@@ -158,7 +158,10 @@ int main(int argc, char** argv) {
   try {
     check_first_word(app, argc, argv);
     app.parse(argc, argv);
-    if (help_command->parsed()) fmt::print("{}", help_text(app, subject));
+    if (help_command->parsed()) {
+      app.clear();  // else its help is that of the command given, which is `help`
+      fmt::print("{}", help_text(app, subject));
+    }
     if (version_command->parsed()) fmt::print("{}\n", version_text());
     if (run_command->parsed()) status = run(file, overrides, output, json, quiet);
     if (check_command->parsed()) status = check(file, overrides);

@@ -4,6 +4,7 @@
 
 #include <memory>
 #include <numbers>
+#include <optional>
 
 #include "core/parallel.hpp"
 
@@ -77,7 +78,7 @@ double farthest(const Eigen::VectorXcd& from, const Eigen::VectorXcd& to) {
 Extremes extremes(const HarmonicBalance& hb, In u, int coordinate) {
   Vector q(samples);
   for (int m = 0; m < samples; ++m) q[m] = displacement(hb, u, coordinate, m);
-  const double highest = top_of_samples(q), lowest = -top_of_samples(-q);
+  const double highest = top_of_samples(q), lowest = 0.0 - top_of_samples(-q);  // 0, not -0, at rest
   return {highest, lowest};
 }
 
@@ -85,24 +86,24 @@ double peak(const HarmonicBalance& hb, In u, int coordinate) { return extremes(h
 
 namespace {
 
-// Extremes of every coordinate of the point last asked about: three columns want them, one after the other.
+// Extremes of the coordinates of the point last asked about: three columns want those of each.
 class ExtremesOfPoint {
  public:
   explicit ExtremesOfPoint(const OrbitBranches& orbits) : orbits_(orbits) {}
   const Extremes& at(In u, int coordinate) {
     if (point_.size() != u.size() || point_ != u) {
-      const HarmonicBalance& hb = orbits_.balance_of(u);
       point_ = u;
-      all_.clear();
-      for (int i = 0; i < hb.coordinates(); ++i) all_.push_back(extremes(hb, u, i));
+      known_.assign(static_cast<std::size_t>(orbits_.balance_of(u).coordinates()), std::nullopt);
     }
-    return all_[static_cast<std::size_t>(coordinate)];
+    auto& known = known_[static_cast<std::size_t>(coordinate)];
+    if (!known) known = extremes(orbits_.balance_of(u), u, coordinate);
+    return *known;
   }
 
  private:
   const OrbitBranches& orbits_;
   Vector point_;
-  std::vector<Extremes> all_;
+  std::vector<std::optional<Extremes>> known_;
 };
 
 }  // namespace
@@ -123,8 +124,8 @@ BranchOutput orbit_output(const OrbitBranches& orbits, const std::string& parame
       out.columns.push_back({q + name, source.length_unit, description, [at, i, value](In u) { return value(at->at(u, i)); }});
     };
     add("_max", "largest |" + q + "| over the period", [](const Extremes& e) { return e.largest(); });
-    add("_highest", "largest " + q + " over the period, with its sign", [](const Extremes& e) { return e.highest; });
-    add("_lowest", "least " + q + " over the period, with its sign", [](const Extremes& e) { return e.lowest; });
+    add("_crest", "largest " + q + " over the period, with its sign", [](const Extremes& e) { return e.highest; });
+    add("_trough", "least " + q + " over the period, with its sign", [](const Extremes& e) { return e.lowest; });
     for (int h = 0; h <= harmonics * finest; ++h) {
       const double k = static_cast<double>(h) / finest;
       const std::string name = harmonic_name(q, k);

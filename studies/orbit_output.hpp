@@ -9,7 +9,7 @@
 
 namespace whirl::studies {
 
-/// Columns q<i>_h<k> (k in multiples of the excitation frequency, up to `harmonics`), their phases, q<i>_max (of |q|), q<i>_highest and q<i>_lowest
+/// Columns q<i>_h<k> (k in multiples of the excitation frequency, up to `harmonics`), their phases, q<i>_max (of |q|), q<i>_crest and q<i>_trough
 /// (with sign), and derived frequencies. `orbits` must live on.
 BranchOutput orbit_output(const OrbitBranches& orbits, const std::string& parameter, int harmonics);
 

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "studies/apart.hpp"
 #include "studies/configuration.hpp"
 #include "studies/result_file.hpp"
 
@@ -11,7 +12,11 @@ namespace fs = std::filesystem;
 
 namespace {
 
-bool is_result(const fs::path& path) try { return !ResultReader(path).text_attribute("/study", "kind").empty(); } catch (const InputError&) {
+// Read apart, for it may be damaged.
+bool is_result(const fs::path& path) try {
+  (void)in_process_of_its_own(path, [&] { return std::vector{ResultReader(path).text_attribute("/study", "kind")}; });
+  return true;
+} catch (const InputError&) {
   return false;
 }
 

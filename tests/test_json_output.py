@@ -13,17 +13,18 @@ PROGRAM = os.environ.get("WHIRL_PROGRAM", os.path.join(HERE, "..", "build", "stu
 BRIEF = {
     "superharmonic": ["continuation.range=[1.55,1.7]", "verification.enabled=false"],
     "continuation": [],
+    "cycles": ["cycles.period_doublings=0"],
     "two-parameter": [],
     "periodic": ["continuation.range=[1.5,1.6]", "seeds.grid=3"],
-    "slow-flow": ["continuation.range=[1.5,1.7]", "verification.enabled=false"],
-    "compare": ["continuation.range=[1.5,1.7]", "sweep.points=2", "second.values=[]"],
-    "integrate": ["integrate.omega=[1.65]"],
+    "slow-flow": ["continuation.range=[1.6,1.65]", "verification.enabled=false", "seeds.max_periods=0"],
+    "compare": ["continuation.range=[1.5,1.7]", "sweep.points=0", "map.values=[]"],
+    "integrate": ["integrate.omega=[1.65]", "integrate.starts=[3.0,0.0]", "sweep.range=[]"],
     "basins": ["basins.resolution=[6,6]"],
     "modes": [],
-    "mode-convergence": ["convergence.modes=[1]"],
+    "mode-convergence": ["convergence.counts=[1]"],
     "catenary-modes": [],
     "catenary-forced": ["response.points=20", "response.refine=false", "response.at=[1.0]", "response.places=[0.0,50.0]"],
-    "veering": ["veering.points=8"],
+    "veering": ["veering.points=10"],
     "guy-statics": ["group.guys=3", "group.directions_deg=[0.0,30.0]"],
     "guy-modes": ["modes.count=3"],
     "guy-stiffness": ["stiffness.points=20", "stiffness.at=[0.5,1.0]"],
@@ -142,12 +143,12 @@ force = [{{equation = 1, amplitude = -0.7, harmonic = 0}}, {{equation = 1, ampli
     periodic = '[continuation]\nparameter = "omega"\nrange = [0.5, 1.0]\nuser_values = [0.8]\n[seeds]\ngrid = 3\n'
     point = next(p for p in run(folder, model("periodic", 0.0) + periodic)[0]["special_points"] if p["type"] == "UZ")
     amplitude = 0.3 / abs(2 - 0.8**2 + 0.08j)
-    check(close(point["q1_highest"], -0.35 + amplitude, 1e-9), f"{point['q1_highest']} is not {-0.35 + amplitude}")
-    check(close(point["q1_lowest"], -0.35 - amplitude, 1e-9), f"{point['q1_lowest']} is not {-0.35 - amplitude}")
+    check(close(point["q1_crest"], -0.35 + amplitude, 1e-9), f"{point['q1_crest']} is not {-0.35 + amplitude}")
+    check(close(point["q1_trough"], -0.35 - amplitude, 1e-9), f"{point['q1_trough']} is not {-0.35 - amplitude}")
     check(close(point["q1_max"], 0.35 + amplitude, 1e-9), "q1_max is the largest |q1|")
     point = next(p for p in run(folder, model("periodic", 0.3) + periodic)[0]["special_points"] if p["type"] == "UZ")
     rest = run(folder, model("integrate", 0.3) + "[integrate]\nomega = [0.8]\nstarts = [0.0]\nsamples = 4096\n")[0]["attractors"][0]
-    for name in ("q1_highest", "q1_lowest"):
+    for name in ("q1_crest", "q1_trough"):
         check(close(point[name], rest[name], 2e-6), f"{name}: {point[name]} and {rest[name]}")  # 4096 samples: 1e-6 below the top
 
 
