@@ -1,5 +1,5 @@
 #pragma once
-/// All roots of a real polynomial, as eigenvalues of its companion matrix.
+/// All roots of a real polynomial, of any moduli, by the simultaneous iteration of Ehrlich and Aberth: Newton steps with the other roots divided out.
 
 #include <complex>
 #include <vector>
