@@ -310,13 +310,17 @@ bool Walker::locate_events() {
     // slope of the parameter vanish with the square of the distance.
     const Vector chord = s.next->u - s.now->u;
     Sample last;
-    if (s.curve.sample(s.crossing.u - 1e-3 * s.step_taken * s.crossing.tangent, chord, last))
+    if (s.curve.sample(s.crossing.u - 1e-3 * s.step_taken * s.crossing.tangent, chord, last)) {
       for (auto& e : s.finder.find(*s.before, *s.now, last)) {
         e.arclength = s.arclength + s.curve.length(e.u - s.now->u);
         s.branch.special.push_back(std::move(e));
       }
+      std::swap(*s.next, last);
+      for (const auto& peak : options_.peaks) find_peak(peak);
+    }
     s.next->u = s.crossing.u;
     s.step_taken = s.curve.length(s.next->u - s.now->u);
+    if (!options_.user_values.empty()) find_user_values();
     s.crossing.arclength = s.arclength + s.step_taken;
     s.branch.special.push_back(std::move(s.crossing));
     s.stop = StopReason::symmetric_branch;
@@ -512,6 +516,10 @@ bool Walker::close_loop() {
   s.bend = s.start_u - s.now->u;
   const double ahead = s.curve.dot(s.bend, s.now->tangent);
   if (ahead < 0.0 || ahead > 1.2 * s.step_taken) return false;
+  // Not before the step has passed it: what lies between is looked at in this step or in none.
+  s.bend = s.next->u - s.start_u;
+  constexpr double last_digits = 1e-6;
+  if (s.curve.dot(s.bend, s.start_tangent) < -last_digits * s.step_taken) return false;
   s.predicted = s.start_u;
   Sample at;
   const Vector chord = s.next->u - s.now->u, before_start = s.now->u + (ahead / s.step_taken) * chord;
