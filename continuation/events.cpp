@@ -3,9 +3,9 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 
+#include "continuation/multiple_point.hpp"
 #include "continuation/parabola.hpp"
 #include "continuation/special_points.hpp"
-#include "continuation/switching.hpp"
 
 namespace whirl::continuation {
 namespace {
@@ -97,13 +97,14 @@ void EventFinder::explain(const Sample& a, const Sample& b, int depth) {
     SpecialPoint point;
     if (locate(kind, a, b, point) && accept(kind, a, b, point, depth)) return;
   }
+  if ((curve_.problem().size() <= always_asked || depth == options_.max_depth) && locate_multiple(a, b, depth)) return;
   Sample middle;
   if (depth < options_.max_depth && between(a, b, 0.5, middle)) {
     explain(a, middle, depth + 1);
     explain(middle, b, depth + 1);
     return;
   }
-  if (!locate_multiple(a, b)) report_unresolved(a, b);
+  report_unresolved(a, b);
 }
 
 bool EventFinder::unstable_changed(const Signature& a, const Signature& b) const {
@@ -126,24 +127,40 @@ bool EventFinder::neutral(const Sample& s, int block) const {
   return std::min(std::abs(rates.ranked(rates.positive())), std::abs(rates.ranked(rates.positive() + 1))) < nothing;
 }
 
-// An even number of real eigenvalues through zero at one point: no determinant changes sign, but the bracket has shrunk on it.
-bool EventFinder::locate_multiple(const Sample& a, const Sample& b) {
+// Several real eigenvalues through zero at one point: of two no determinant changes sign, of three no simple system is regular. What remains of the
+// step on either side is explained in turn.
+bool EventFinder::locate_multiple(const Sample& a, const Sample& b, int depth) {
   const Problem& f = curve_.problem();
   if (curve_.orbit() || f.derivatives() < 2) return false;
-  SpecialPoint p;
-  p.type = EventType::branch_point;
-  p.subtype = "multiple";
-  const double part = secant(a, b, crossing({EventType::branch_point, 0}, a, b));
-  p.u = a.u + part * (b.u - a.u);
-  p.tangent = a.tangent;
-  p.residual = std::max(a.residual, b.residual);
-  if (departures(f, p).size() < 2) return false;
-  p.bracket[0] = std::min(a.u[f.size()], b.u[f.size()]);
-  p.bracket[1] = std::max(a.u[f.size()], b.u[f.size()]);
-  p.unstable_before = a.signature.total_unstable();
-  p.unstable_after = b.signature.total_unstable();
-  found_.push_back(p);
-  return true;
+  const Vector chord = b.u - a.u;
+  const double span = curve_.length(chord);
+  const auto point = multiple_point_near(f, a.u + secant(a, b, crossing({EventType::branch_point, 0}, a, b)) * chord);
+  if (!point) return false;
+  const double part = fraction(curve_, a, b, point->u);
+  constexpr double off_chord = 0.1, close = 1e-9;  // parts of the step; of the metric
+  if (part < -close || part > 1.0 + close || curve_.length(point->u - a.u - part * chord) > off_chord * span + close) return false;
+  for (double delta = std::min(1e-6, 0.01 * span); delta < 0.5 * span; delta *= 10.0) {
+    Sample left, right;
+    const Vector offset = (delta / span) * chord;
+    if (!curve_.sample(point->u - offset, chord, left) || !curve_.sample(point->u + offset, chord, right)) continue;
+    const int changed = std::abs(right.signature.total_unstable() - left.signature.total_unstable());
+    if (changed < 2 || changed > point->dimension) continue;
+    SpecialPoint p;
+    p.type = EventType::branch_point;
+    p.subtype = "multiple";
+    p.u = point->u;
+    p.tangent = left.tangent;
+    p.residual = point->residual;
+    const double at = p.u[f.size()], before = left.u[f.size()], behind = right.u[f.size()];
+    p.bracket[0] = std::min({at, before, behind});
+    p.bracket[1] = std::max({at, before, behind});
+    p.unstable_before = left.signature.total_unstable();
+    p.unstable_after = right.signature.total_unstable();
+    found_.push_back(p);
+    explain_rest(a, left, right, b, depth + 1);
+    return true;
+  }
+  return false;
 }
 
 void EventFinder::report_unresolved(const Sample& a, const Sample& b) {

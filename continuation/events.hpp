@@ -88,7 +88,7 @@ class EventFinder {
                        int pairs_right);
   bool turns_at_branch_point(const std::vector<EventKind>& shown, const SpecialPoint& point) const;
   void find_further_pairs(const EventKind& kind, const SpecialPoint& point, const Sample& left, const Sample& right, double delta);
-  bool locate_multiple(const Sample& a, const Sample& b);
+  bool locate_multiple(const Sample& a, const Sample& b, int depth);
   void report_unresolved(const Sample& a, const Sample& b);
 
   bool between(const Sample& a, const Sample& b, double sigma, Sample& out);

@@ -27,16 +27,19 @@ class OrbitNetwork {
 
   /// u0: an unknown of `problem(level)`.
   bool add_seed(const Vector& u0, const std::string& origin, int level = 0);
-  /// At every branch point up to the network's depth, at every period doubling up to the number asked for.
+  /// At every branch point up to the network's depth, at every period doubling up to the number asked for. Where a branch of doubled period ends on
+  /// one of the undoubled that is not known yet, that one is followed too.
   void switch_branches();
 
   int levels() const { return static_cast<int>(networks_.size()); }
   const OrbitProblem& problem(int level) const { return *problems_[static_cast<std::size_t>(level)]; }
   const Network& network(int level) const { return *networks_[static_cast<std::size_t>(level)]; }
+  std::vector<std::string> notes() const;  ///< of all levels, see Network::notes
   bool stopped() const;
 
  private:
   void pass_on(int level);  // period doublings of a level to the next
+  std::size_t branches() const;
   std::vector<const OrbitProblem*> problems_;
   std::vector<std::unique_ptr<Network>> networks_;
   std::vector<std::size_t> passed_;  // branches of each level whose period doublings were passed on

@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "continuation/augmented.hpp"
+#include "continuation/multiple_point.hpp"
 #include "continuation/period_doubling.hpp"
 #include "continuation/switching.hpp"
 #include "continuation/torus.hpp"
@@ -32,6 +33,14 @@ std::unique_ptr<AugmentedSystem> torus_system(const Curve& curve, int group, con
   const double kappa = torus_frequency(orbit, near.u, group);
   if (!(kappa > 0.0)) return nullptr;
   return std::make_unique<TorusSystem>(orbit, curve.blocks().indices[0], unknowns_of_group(orbit, near.u, group), near.u, kappa);
+}
+
+// Do several eigenvalues vanish at this very point?
+bool is_multiple(const Problem& f, const Vector& u) {
+  constexpr double same = 1e-7;
+  if (f.size() > always_asked) return false;
+  const auto point = multiple_point_near(f, u);
+  return point && (point->u - u).norm() <= same * (1.0 + u.norm());
 }
 
 }  // namespace
@@ -77,6 +86,7 @@ bool special_point_near(const Curve& curve, const EventKind& kind, const Sample&
   if (kind.type == EventType::hopf && !(static_cast<HopfSystem&>(*system).kappa(r.x) > 0.0)) return false;
   if (kind.type == EventType::torus && !(static_cast<TorusSystem&>(*system).kappa(r.x) > 0.0)) return false;
   if (auto* point = dynamic_cast<BranchPointSystem*>(system.get()); point && !point->persists(r.x)) return false;
+  if (kind.type == EventType::branch_point && kind.block == 0 && is_multiple(f, system->base_point(r.x))) return false;
   out = {};
   out.type = kind.type;
   out.block = kind.block;
@@ -85,7 +95,7 @@ bool special_point_near(const Curve& curve, const EventKind& kind, const Sample&
   out.residual = r.residual;
   out.subtype = kind.type == EventType::branch_point ? blocks.subtype[static_cast<std::size_t>(kind.block)] : "";
   if (auto* singular = dynamic_cast<SingularSystem*>(system.get())) out.null_vector = singular->null_vector(r.x);
-  if (kind.type == EventType::branch_point && kind.block == 0) (void)departures(f, out);  // tells pitchfork from transcritical
+  if (kind.type == EventType::branch_point && kind.block == 0) name_branch_point(f, out);
   if (kind.type == EventType::hopf) out.frequency = std::sqrt(static_cast<HopfSystem&>(*system).kappa(r.x));
   if (kind.type == EventType::torus) {
     const auto& torus = static_cast<TorusSystem&>(*system);

@@ -256,7 +256,10 @@ ExitStatus finish(ResultFile& file, RunContext& context, const std::vector<conti
     if (early(b.start_reason) || early(b.stop_reason)) status = ExitStatus::numerical_failure;
     warn_of_unresolved(b, context);
   }
-  if (branches.empty()) status = ExitStatus::numerical_failure;
+  if (branches.empty()) {
+    status = ExitStatus::numerical_failure;
+    reasons.emplace_back("no branch: no start led to a solution");
+  }
   return finish(file, context, status, reasons);
 }
 

@@ -61,11 +61,11 @@ std::vector<std::string> check(const Configuration& c) { return setup(c).source-
 
 void explore(const Problem& f, const Setup& s, Network& net, const std::vector<double>& deflate_at, RunContext& context) {
   for (const Start& start : s.source->starts(f, s.parameter, s.network.walk.lower, s.network.walk.upper)) {
-    try_seed(net, start.u, start.origin, context);
+    (void)net.add_seed(start.u, start.origin);
     net.switch_branches();
   }
   for (std::size_t i = 0; i < s.seeds.size(); ++i) {
-    try_seed(net, Eigen::Map<const Vector>(s.seeds[i].data(), f.size() + 1), fmt::format("seed {}", i + 1), context);
+    (void)net.add_seed(Eigen::Map<const Vector>(s.seeds[i].data(), f.size() + 1), fmt::format("seed {}", i + 1));
     net.switch_branches();
   }
   for (const double p : deflate_at) {
@@ -85,7 +85,7 @@ void explore(const Problem& f, const Setup& s, Network& net, const std::vector<d
       }
     const auto all = deflated_solutions(f, known, starts);
     for (std::size_t i = known.size(); i < all.size(); ++i) {
-      try_seed(net, all[i], fmt::format("deflation at {} = {:.6g}", s.parameter, p), context);
+      (void)net.add_seed(all[i], fmt::format("deflation at {} = {:.6g}", s.parameter, p));
       net.switch_branches();
     }
   }
@@ -119,6 +119,7 @@ ExitStatus run(const Configuration& c, RunContext& context) {
   file.flush();
   if (const auto left = net.not_followed(); !left.empty() && !net.stopped() && s.network.depth > 0)
     context.warn(fmt::format("branches at {} are not followed: continuation.depth is {}", fmt::join(left, ", "), s.network.depth));
+  for (const auto& note : net.notes()) context.warn(note);
   context.progress.clear();
   if (context.json) fmt::print("{}", output.json(branches));
   if (!context.quiet) fmt::print(stderr, "{}", output.text(branches));

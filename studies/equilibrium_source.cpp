@@ -238,11 +238,9 @@ std::vector<Observable> peaks_of(const Configuration& c, const EquilibriumSource
 }
 
 void try_seed(Network& net, const Vector& u, const std::string& origin, RunContext& context) {
-  try {
-    (void)net.add_seed(u, origin);
-  } catch (const std::invalid_argument& e) {
-    context.warn(fmt::format("{}: {}", origin, e.what()));
-  }
+  const std::size_t before = net.notes().size();
+  (void)net.add_seed(u, origin);
+  for (std::size_t i = before; i < net.notes().size(); ++i) context.warn(net.notes()[i]);
 }
 
 }  // namespace whirl::studies

@@ -149,6 +149,7 @@ bool OrbitBranches::pass() {
 
 void OrbitBranches::find() {
   while (!pass()) harmonics_ = needed_;
+  for (const auto& note : net_->notes()) context_.warn(note);
   context_.progress.clear();
 }
 

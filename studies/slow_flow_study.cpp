@@ -217,6 +217,7 @@ void explore(const Configuration& c, const Setup& s, Network& net, RunContext& c
   }
   for (const int m : longer)
     context.warn(fmt::format("a motion of period {}T was met that the ansatz cannot hold: it needs nu = {} or a multiple", m, m));
+  for (const auto& note : net.notes()) context.warn(note);
   if (net.branches().empty()) context.warn("no steady state was found in the range");
 }
 

@@ -110,7 +110,7 @@ BranchOutput output_of(const SuperharmonicFlow& flow, const Setup& s) {
   return out;
 }
 
-// First point by KINSOL from rest, then every closed-form solution on the grid that no branch passes through.
+// First point by KINSOL from rest, then every closed-form solution on the grid that no branch passes through. Any of them starts the study.
 void explore(const SuperharmonicFlow& flow, const Setup& s, Network& net, RunContext& context) {
   const auto& walk = s.network.walk;
   Vector start = Vector::Zero(5);
@@ -131,6 +131,7 @@ void explore(const SuperharmonicFlow& flow, const Setup& s, Network& net, RunCon
   net.switch_branches();
   seed(coupled_states, "closed form (56)");
   net.switch_branches();
+  for (const auto& note : net.notes()) context.warn(note);
   if (net.branches().empty()) context.warn("no steady state was found in the range");
 }
 
