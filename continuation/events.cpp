@@ -115,7 +115,7 @@ void EventFinder::explain(const Sample& a, const Sample& b, int depth) {
     SpecialPoint point;
     if (locate(kind, a, b, point) && accept(kind, a, b, point, depth)) return;
   }
-  if (locate_multiple(a, b, depth)) return;
+  if ((curve_.problem().size() <= always_asked || depth == options_.max_depth) && locate_multiple(a, b, depth)) return;
   Sample middle;
   if (depth < options_.max_depth && between(a, b, 0.5, middle)) {
     explain(a, middle, depth + 1);

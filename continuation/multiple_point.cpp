@@ -8,6 +8,7 @@ namespace whirl::continuation {
 namespace {
 
 constexpr double nearly_singular = 1e-4;  // singular values below it, in parts of the usual size of r_x, belong to the kernel
+constexpr double beside_by = 0.01;        // of 1 + |u|: no further, for what grows exponentially
 constexpr double rank = 1e-9;             // singular values of the equations' Jacobian below it, relative, leave a direction open
 constexpr double solved = 1e-9;           // of r and G, in parts of the usual size
 constexpr double settled = 1e-11;         // last step
@@ -53,7 +54,7 @@ double usual_jacobian(const Problem& f, In u) {
   std::vector<double> sizes;
   for (int i = 0; i <= n; ++i) {
     Vector beside = u;
-    beside[i] += 0.1 * (1.0 + std::abs(u[i]));
+    beside[i] += beside_by * (1.0 + std::abs(u[i]));
     f.jacobian(beside, around);
     if (around.allFinite()) sizes.push_back(around.norm());
   }
@@ -71,7 +72,9 @@ std::optional<MultiplePoint> multiple_point_near(const Problem& f, In u) {
   f.jacobian(u, j);
   const Eigen::JacobiSVD<Matrix> svd(j.leftCols(n), Eigen::ComputeFullU | Eigen::ComputeFullV);
   const auto d = (svd.singularValues().array() <= nearly_singular * usual).count();
-  if (d < 2) return std::nullopt;
+  // On a fold r_p fills a dimension: of [r_x r_p] two must be missing.
+  const Eigen::VectorXd whole = Eigen::JacobiSVD<Matrix>(j).singularValues();
+  if (d < 2 || (whole.array() <= nearly_singular * usual).count() < 2) return std::nullopt;
   const Equations equations(f, svd.matrixU().rightCols(d), svd.matrixV().rightCols(d));
   MultiplePoint point{u, static_cast<int>(d), 0.0};
   Vector values;

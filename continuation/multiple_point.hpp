@@ -13,6 +13,9 @@
 
 namespace whirl::continuation {
 
+/// Up to so many coordinates every branch point is asked whether it is one; in larger problems only where a search has come to its end.
+inline constexpr int always_asked = 8;
+
 struct MultiplePoint {
   Vector u;         ///< (x, p), size n + 1
   int dimension;    ///< d, of the kernel of r_x

@@ -61,6 +61,14 @@ std::unique_ptr<AugmentedSystem> torus_system(const Curve& curve, int group, con
   return std::make_unique<TorusSystem>(orbit, curve.blocks().indices[0], unknowns_of_group(orbit, near.u, group), near.u, kappa);
 }
 
+// Do several eigenvalues vanish at this very point?
+bool is_multiple(const Problem& f, const Vector& u) {
+  constexpr double same = 1e-7;
+  if (f.size() > always_asked) return false;
+  const auto point = multiple_point_near(f, u);
+  return point && (point->u - u).norm() <= same * (1.0 + u.norm());
+}
+
 }  // namespace
 
 bool special_point_near(const Curve& curve, const EventKind& kind, const Sample& near, SpecialPoint& out, double frequency) {
@@ -106,7 +114,7 @@ bool special_point_near(const Curve& curve, const EventKind& kind, const Sample&
   if (kind.type == EventType::hopf && !(static_cast<HopfSystem&>(*system).kappa(r.x) > 0.0)) return false;
   if (kind.type == EventType::torus && !(static_cast<TorusSystem&>(*system).kappa(r.x) > 0.0)) return false;
   if (kind.type == EventType::branch_point && kind.block == 0 && !persists(r.x, units)) return false;
-  if (kind.type == EventType::branch_point && kind.block == 0 && multiple_point_near(f, system->base_point(r.x))) return false;  // no simple one
+  if (kind.type == EventType::branch_point && kind.block == 0 && is_multiple(f, system->base_point(r.x))) return false;
   out = {};
   out.type = kind.type;
   out.block = kind.block;
