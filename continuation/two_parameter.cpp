@@ -25,7 +25,7 @@ class Follower {
  private:
   WalkOptions walk_options() const;
   bool settle_start();
-  Vector direction() const;
+  Vector direction();
   Vector scales() const;
   bool mirrored(const Vector& a, const Vector& b) const;
   StopReason must_stop(const Branch& b, int i) const;
@@ -89,9 +89,9 @@ bool Follower::settle_start() {
 }
 
 // Of the curve at its start, p2 increasing: the kernel of the system's Jacobian.
-Vector Follower::direction() const {
+Vector Follower::direction() {
   const Vector units = scales();
-  const auto& system = const_cast<SpecialCurve&>(curve_).system();
+  const AugmentedSystem& system = curve_.system();
   Matrix j(system.size(), system.size() + 1);
   system.jacobian(start_, j);
   const Matrix rows = (j * units.asDiagonal()).transpose();
