@@ -177,7 +177,8 @@ bool Curve::tangent(Out tangent) {
 }
 
 bool Curve::classify(In u, In tangent, Signature& signature) {
-  signature.forward = tangent[f_.size()] > 0.0;
+  constexpr double upright = 1e-13;  // a parameter that stays put along a curve turns by rounding all the way
+  signature.forward = tangent[f_.size()] > -upright * p_scale_;
   if (!f_.is_flow()) {
     block_determinants(signature, signature.forward);
     return !orbit_ || count_multipliers(u, signature);

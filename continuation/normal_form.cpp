@@ -2,6 +2,7 @@
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/LU>
+#include <algorithm>
 
 #include "continuation/null_vectors.hpp"
 #include "continuation/period_doubling.hpp"
@@ -58,6 +59,12 @@ Vector solve_off_null(const Matrix& a, const Vector& v, const Vector& w, const V
   return m.partialPivLu().solve(r).head(n);
 }
 
+// Is another eigenvalue zero as well? A^-1 does not exist there, nor does l1: what rounding leaves of it is a number without meaning.
+bool is_zero_hopf(const Eigen::VectorXcd& eigenvalues, double frequency) {
+  constexpr double zero = 1e-7;  // of the frequency: special points are located to 1e-10
+  return std::any_of(eigenvalues.begin(), eigenvalues.end(), [&](const auto& z) { return std::abs(z) < zero * frequency; });
+}
+
 void set_doubling_coefficient(const OrbitProblem& orbit, SpecialPoint& point) {
   auto doubled = period_doubling_near(orbit, point.u, point.block);
   if (!doubled) return;
@@ -104,6 +111,11 @@ void set_normal_form(const Problem& f, SpecialPoint& point, const Vector& sense,
       (values.array() - z).abs().minCoeff(&best);
       return best;
     };
+    if (is_zero_hopf(right.eigenvalues(), point.frequency)) {
+      point.subtype = zero_hopf_subtype;
+      point.has_coefficient = false;
+      return;
+    }
     const ComplexVector q = right.eigenvectors().col(nearest(right.eigenvalues(), target)).normalized();
     ComplexVector p = left.eigenvectors().col(nearest(left.eigenvalues(), std::conj(target)));  // A'p = -i w p
     p /= std::conj(p.dot(q));                                                                   // p* q = 1

@@ -16,6 +16,8 @@
 
 namespace whirl::continuation {
 
+inline constexpr const char* zero_hopf_subtype = "ZH";  ///< of a Hopf point where an eigenvalue is zero as well: it has no coefficient
+
 /// Sets point.coefficient (and null vectors of a Hopf point) where the problem offers third derivatives and the type has a coefficient.
 /// A branch point is a pitchfork where it breaks a reflection or its subtype says "PF" (without either: where w' B(v, v) = 0), else it gets the
 /// transcritical (1/2) w' B(v, v).

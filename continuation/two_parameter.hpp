@@ -8,20 +8,24 @@
 ///
 ///     on a fold curve     CP  cusp (the quadratic coefficient vanishes), BT  Bogdanov-Takens (w'v = 0), ZH  zero-Hopf (a pair crosses)
 ///     on a Hopf curve     GH  generalised Hopf (l1 = 0), BT (frequency -> 0), ZH (a real eigenvalue crosses)
-///     on a branch-point curve   DP  degenerate pitchfork (the cubic coefficient vanishes: super- to subcritical)
+///     on a branch-point curve   DP  degenerate pitchfork (the cubic coefficient vanishes: super- to subcritical), FT  contact with a fold curve (the
+///                               quadratic coefficient of a transcritical point vanishes)
 ///     where symmetry parts r_x   FP  folds and pitchforks cross, PP  pitchforks that break different symmetries cross
 ///     of periodic motions   R1 a second multiplier at 1 (on LP and BP curves), R2 at -1 (on PD curves), R3, R4 multipliers at the third and fourth
 ///     roots
 ///                         of 1 (on TR curves)
-///     the least value of a parameter on any curve is its threshold, type "MIN"/"MAX" in the second parameter.
+///     the least value of a parameter on any curve is its threshold, type "MIN"/"MAX" in the second parameter; UZ  values asked for.
+///
+/// A pitchfork or transcritical point that the second parameter dissolves lies on a curve of folds, which is followed in its place.
 
 #include "continuation/walker.hpp"
 
 namespace whirl::continuation {
 
 struct CodimensionTwo {
-  std::string type;  ///< CP, BT, ZH, GH, DP, FP, PP, or MIN / MAX: extremum of the second parameter along the curve
-  Vector u;          ///< (x, p1, p2)
+  std::string type;     ///< CP, BT, ZH, GH, DP, FT, FP, PP, UZ, or MIN / MAX: extremum of the second parameter along the curve
+  std::string subtype;  ///< FT: of the curve met there, "LP" or "TC"
+  Vector u;             ///< (x, p1, p2)
   double residual = 0.0;
   double arclength = 0.0;
 };
@@ -29,7 +33,7 @@ struct CodimensionTwo {
 struct TwoParameterOptions {
   double range1[2] = {0.0, 1.0};  ///< of the first parameter
   double range2[2] = {0.0, 1.0};  ///< of the second
-  WalkOptions walk;               ///< lower and upper are set from range2
+  WalkOptions walk;               ///< lower and upper are set from range2; user_values are of the second parameter
   double tolerance = 1e-10;       ///< of codimension-2 points, relative
 };
 
@@ -46,12 +50,21 @@ struct DefiningCurve {
   std::string name, born_at;
 };
 
-/// Follows the curve through `point` (of problem2 with p2 held at the value in `p2`). Throws std::invalid_argument if the point's type has no curve.
+/// Follows the curve through `point` (of problem2 with p2 held at the value in `p2`). Throws std::invalid_argument if the point's type has no curve
+/// or none can be followed from it.
 DefiningCurve follow(const Problem& problem2, const SpecialPoint& point, double p2, const TwoParameterOptions& options,
                      const Observer& observer = {});
 
-/// Starts of the other curves that pass through a codimension-2 point of `curve`: of Hopf points through BT, ZH and HH, of folds through BT and ZH
-/// met on a Hopf curve. Each is to be followed with p2 = point.u[n + 1]; empty if there is none.
-std::vector<SpecialPoint> curves_through(const Problem& problem2, const DefiningCurve& curve, const CodimensionTwo& point);
+/// A special point to follow a curve from, p2 held.
+struct CurveStart {
+  SpecialPoint point;
+  double p2 = 0.0;
+};
+
+/// Starts of the other curves that meet at a codimension-2 point of `curve`, next to it: there a curve may cross another of its kind, as of Hopf
+/// points on a branch and on one that leaves it. Of Hopf points through BT, ZH and HH; of folds, or of branch points where those persist, through BT,
+/// ZH, FT and DP. Flows only; empty if there is none.
+std::vector<CurveStart> curves_through(const Problem& problem2, const DefiningCurve& curve, const CodimensionTwo& point,
+                                       const TwoParameterOptions& options);
 
 }  // namespace whirl::continuation

@@ -32,10 +32,10 @@ POINTS = {
     "DP": ("D", 5.0, "DP degenerate pitchfork"), "BT": ("s", 5.2, "BT Bogdanov–Takens"), "ZH": ("X", 6.5, "ZH zero-Hopf"),
     "R1": ("s", 5.2, "R1 resonance 1:1"), "R2": ("s", 5.2, "R2 resonance 1:2"), "R3": ("h", 6.0, "R3 resonance 1:3"),
     "R4": ("p", 6.0, "R4 resonance 1:4"), "GH": ("h", 6.5, "GH generalised Hopf"),
-    "FP": ("P", 6.5, "FP fold and pitchfork"), "PP": ("P", 6.5, "PP two pitchforks"), "HH": ("8", 6.5, "HH double Hopf"), "CP": ("*", 8.5, "CP cusp"), "threshold": ("o", 5.5, "threshold of whirling"),
-    "MIN": ("v", 3.6, "minimum"), "MAX": ("^", 3.6, "maximum"),
+    "FT": ("d", 6.0, "FT folds touch transcritical points"), "FP": ("P", 6.5, "FP fold and pitchfork"), "PP": ("P", 6.5, "PP two pitchforks"), "HH": ("8", 6.5, "HH double Hopf"), "CP": ("*", 8.5, "CP cusp"), "threshold": ("o", 5.5, "threshold of whirling"),
+    "UZ": (".", 4.0, "values asked for"), "MIN": ("v", 3.6, "minimum"), "MAX": ("^", 3.6, "maximum"),
 }
-QUIET = ("MIN", "MAX")      # marked, not named
+QUIET = ("UZ", "MIN", "MAX")      # marked, not named
 WINDOW = np.array([[-0.06, 0.085], [-0.05, 0.055]])  # panel about the threshold, in ranges of the two parameters
 
 
@@ -82,9 +82,10 @@ def figures(result):
     if not names:
         return []
     first = result.group("curves").group(names[0])
-    x = parameter_of(result, first)
+    own = str(result.group("study").attributes.get("first.parameter", ""))  # of the chart, if it leaves the branches' parameter
+    x = own if own in first.columns else parameter_of(result, first)
     y = str(result.group("study").attributes.get("second.parameter", list(first.columns)[1]))
-    scale = np.array([span(result, "continuation.range", names, x), span(result, "second.range", names, y)])
+    scale = np.array([span(result, "first.range" if x == own else "continuation.range", names, x), span(result, "second.range", names, y)])
     points = points_of(result, x, y, scale)
     curves = [curve_of(result, name, x, y, scale, points) for name in names]
     curves.sort(key=lambda c: list(CURVES).index(c.kind))

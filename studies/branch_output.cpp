@@ -104,7 +104,7 @@ void put_special_points(ResultFile& file, const BranchOutput& out, std::span<con
   std::vector<const SpecialPoint*> points;
   TextColumn names{"branch", "branch the point lies on", {}}, labels{"label", "type and running number on the branch", {}},
       types{"type", "LP fold, BP branch point, HB Hopf, UZ user value, RP peak, PD period doubling, TR torus, unresolved", {}},
-      subtypes{"subtype", "WH whirling starts, PF pitchfork, TC transcritical, or the peak's quantity", {}},
+      subtypes{"subtype", "WH whirling starts, PF pitchfork, TC transcritical, ZH a Hopf point with a zero eigenvalue, or the peak's quantity", {}},
       criticalities{"criticality", "supercritical or subcritical, of pitchforks and Hopf points", {}};
   for (const auto& b : branches)
     for (std::size_t i = 0; i < b.special.size(); ++i) {

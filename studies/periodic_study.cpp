@@ -2,8 +2,9 @@
 
 #include <fmt/format.h>
 
-#include "continuation/two_parameter.hpp"
+#include "continuation/chart.hpp"
 #include "models/closed_forms.hpp"
+#include "studies/chart_output.hpp"
 #include "studies/common_keys.hpp"
 #include "studies/orbit_output.hpp"
 
@@ -19,7 +20,7 @@ struct Setup {
   int shown_harmonics = 3;
   std::string second;  // "": no curves
   TwoParameterOptions follow;
-  std::vector<std::string> curves;
+  std::vector<EventType> curves;
   std::vector<double> checked;
 };
 
@@ -67,6 +68,9 @@ Schema schema() {
          .default_value = std::vector<double>{},
          .optional = true,
          .max_items = 2});
+  s.add({.name = "second.user_values",
+         .description = "values of the second parameter at which points of every curve are listed (UZ)",
+         .default_value = std::vector<double>{}});
   s.add({.name = "second.curves",
          .description = "which special points to follow",
          .default_value = std::vector<std::string>{"LP", "BP", "PD", "TR"},
@@ -87,6 +91,14 @@ std::vector<Vector> starts_of(const Configuration& c, std::size_t coordinates) {
   return starts;
 }
 
+std::vector<EventType> wanted_types(const std::vector<std::string>& names) {
+  std::vector<EventType> types;
+  for (const auto& name : names)
+    for (const EventType type : {EventType::fold, EventType::branch_point, EventType::period_doubling, EventType::torus})
+      if (name == to_string(type)) types.push_back(type);
+  return types;
+}
+
 void read_second(const Configuration& c, Setup& s) {
   const auto range = c.has("second.range") ? c.numbers("second.range") : std::vector<double>{};
   if (range.empty()) return;
@@ -98,12 +110,14 @@ void read_second(const Configuration& c, Setup& s) {
   if (here < range[0] || here > range[1])
     throw c.error("second.range", fmt::format("must contain the value {:g} that {} has in this file", here, s.second));
   s.follow.walk = s.orbits.network.walk;
-  s.follow.walk.user_values.clear();
+  s.follow.walk.user_values = c.numbers("second.user_values");
+  for (const double x : s.follow.walk.user_values)
+    if (x < range[0] || x > range[1]) throw c.error("second.user_values", fmt::format("must lie in second.range, got {:g}", x));
   s.follow.range1[0] = s.orbits.network.walk.lower;
   s.follow.range1[1] = s.orbits.network.walk.upper;
   s.follow.range2[0] = range[0];
   s.follow.range2[1] = range[1];
-  s.curves = c.texts("second.curves");
+  s.curves = wanted_types(c.texts("second.curves"));
 }
 
 Setup setup(const Configuration& c) {
@@ -162,108 +176,58 @@ std::vector<Vector> averaged_starts(const Configuration& c, const Setup& s, cons
   return starts;
 }
 
-void write_curve(ResultFile& file, const Setup& s, const std::vector<std::string>& units, const DefiningCurve& curve) {
-  const Eigen::Index last = curve.u.rows() - 1;
-  const auto column = [&](const std::string& name, const std::string& unit, const std::string& description, auto value) {
-    Column c{name, unit, description, {}};
-    for (Eigen::Index i = 0; i < curve.u.cols(); ++i) c.values.push_back(value(i));
-    return c;
-  };
-  const std::string group = "/curves/" + curve.name;
-  file.table(group, {column(s.parameter, units[0], "first parameter", [&](auto i) { return curve.u(last - 1, i); }),
-                     column(s.second, units[1], "second parameter", [&](auto i) { return curve.u(last, i); }),
-                     column("coefficient", "-", "normal-form coefficient", [&](auto i) { return curve.coefficient[i]; }),
-                     column("frequency", "rad/s", "torus curves: of the second motion", [&](auto i) { return curve.frequency[i]; }),
-                     column("residual", "-", "largest residual of the defining system", [&](auto i) { return curve.residual[i]; })});
-  file.attribute(group, "type", std::string(to_string(curve.type)));
-  file.attribute(group, "subtype", curve.subtype);
-  file.attribute(group, "born_at", curve.born_at);
-  file.attribute(group, "start_reason", std::string(to_string(curve.start_reason)));
-  file.attribute(group, "stop_reason", std::string(to_string(curve.stop_reason)));
+// Of a motion of a balance: its largest displacements, and where it starts, as the kind `integrate` takes it.
+std::vector<PointColumn> motion_columns(const HarmonicBalance& hb, const ForcedSystem& source) {
+  std::vector<PointColumn> all;
+  const int n = static_cast<int>(source.coordinates.size());
+  for (int i = 0; i < n; ++i) {
+    const std::string& q = source.coordinates[static_cast<std::size_t>(i)];
+    all.push_back({q + "_max", source.length_unit, "largest |" + q + "| over the period", [&hb, i](In u) { return peak(hb, u, i); }});
+    all.push_back({q + "_start", source.length_unit, q + " where cos(omega t) = 1", [&hb, i](In u) { return hb.state_at(u, 0.0)[i]; }});
+    all.push_back(
+        {q + "_rate_start", source.length_unit == "m" ? "m/s" : "1/s", "its rate there", [&hb, i, n](In u) { return hb.state_at(u, 0.0)[n + i]; }});
+  }
+  return all;
 }
 
-// Does a curve already followed pass through the point? Both parameters and the motion's size there tell.
-bool on_known_curve(const std::vector<DefiningCurve>& curves, const SpecialPoint& p, double p2, const Setup& s) {
-  const double w1 = s.follow.range1[1] - s.follow.range1[0], w2 = s.follow.range2[1] - s.follow.range2[0], p1 = p.u[p.u.size() - 1];
-  return std::any_of(curves.begin(), curves.end(), [&](const DefiningCurve& c) {
-    if (c.type != p.type || c.subtype != (p.type == EventType::branch_point ? p.subtype : "")) return false;
-    const Eigen::Index last = c.u.rows() - 1;
-    for (Eigen::Index i = 0; i + 1 < c.u.cols(); ++i) {
-      const double a = c.u(last, i), b = c.u(last, i + 1);
-      if ((a - p2) * (b - p2) > 0.0 || a == b) continue;
-      const double t = (p2 - a) / (b - a), at = c.u(last - 1, i) + t * (c.u(last - 1, i + 1) - c.u(last - 1, i));
-      const double chord = std::hypot((c.u(last - 1, i + 1) - c.u(last - 1, i)) / w1, (b - a) / w2);
-      if (std::abs(at - p1) / w1 < 0.1 * chord * chord + 1e-6) return true;
-    }
-    return false;
-  });
-}
-
-struct Chart {
-  std::vector<DefiningCurve> curves;
+struct FollowedChart {
+  std::vector<std::unique_ptr<HarmonicBalance>> balances;  // one for each level of period doubling: the columns of the curves ask them
+  std::vector<ChartCurve> curves;
+  ChartOutput output;
 };
 
 // Every special point of every branch followed in the second parameter, each curve once.
-Chart follow_all(const Configuration& c, const Setup& s, const OrbitBranches& orbits, ResultFile& file, RunContext& context) {
-  Chart chart;
+FollowedChart follow_all(const Configuration& c, const Setup& s, const OrbitBranches& orbits, ResultFile& file, RunContext& context) {
+  FollowedChart all;
   const ForcedSystem wide = forced_system_of(c, {s.parameter, s.second});
+  all.output = {s.parameter, wide.lens_units[0], s.second, wide.lens_units[1]};
   const double p2 = forced_lens_value(c, s.second);
-  const Observer observer = [](const Branch&, int) { return !interrupted; };
-  int number = 0;
   for (int level = 0; level < orbits.levels(); ++level) {
-    const HarmonicBalance& hb = orbits.balance(level);
-    const HarmonicBalance hb2(wide.system, {.harmonics = hb.harmonics(), .nu = hb.nu(), .reflections = wide.reflections, .floquet = {}});
+    all.balances.push_back(std::make_unique<HarmonicBalance>(
+        wide.system,
+        HarmonicBalanceOptions{
+            .harmonics = orbits.balance(level).harmonics(), .nu = orbits.balance(level).nu(), .reflections = wide.reflections, .floquet = {}}));
+    const HarmonicBalance& hb = *all.balances.back();
+    Chart chart(hb, s.follow);
+    chart.want(s.curves);
+    chart.set_observer([](const Branch&, int) { return !interrupted; });
+    chart.on_warning([&](const std::string& text) { context.warn(text); });
+    chart.on_curve([&](DefiningCurve& curve) {
+      curve.name = fmt::format("{}{}", curve.subtype.empty() ? to_string(curve.type) : curve.subtype.c_str(), all.curves.size() + 1);
+      const bool doubled = curve.type == EventType::period_doubling;
+      all.curves.push_back({.curve = curve, .columns = motion_columns(doubled ? dynamic_cast<const HarmonicBalance&>(hb.doubled()) : hb, wide)});
+      all.output.write_curve(file, all.curves.back());
+      file.flush();
+      context.progress.show(fmt::format("curve {}", curve.name));
+    });
     for (const auto& b : orbits.network(level).branches())
       for (std::size_t i = 0; i < b.special.size() && !interrupted; ++i) {
-        const auto& point = b.special[i];
-        const bool wanted = std::find(s.curves.begin(), s.curves.end(), to_string(point.type)) != s.curves.end();
         const bool arrival = b.stop_reason == StopReason::symmetric_branch && i + 1 == b.special.size();  // stands on the other branch
-        if (!wanted || arrival || on_known_curve(chart.curves, point, p2, s)) continue;
-        DefiningCurve curve;
-        try {
-          curve = follow(hb2, point, p2, s.follow, observer);
-        } catch (const std::invalid_argument& e) {
-          context.warn(fmt::format("{} on {}: {}", label(b, i), b.name, e.what()));
-          continue;
-        }
-        curve.name = fmt::format("{}{}", curve.subtype.empty() ? to_string(curve.type) : curve.subtype.c_str(), ++number);
-        curve.born_at = fmt::format("{}:{}", b.name, label(b, i));
-        write_curve(file, s, wide.lens_units, curve);
-        file.flush();
-        context.progress.show(fmt::format("curve {}", curve.name));
-        chart.curves.push_back(std::move(curve));
+        if (!arrival) chart.follow_from(b.special[i], p2, fmt::format("{}:{}", b.name, label(b, i)));
       }
   }
   context.progress.clear();
-  return chart;
-}
-
-void write_chart_points(ResultFile& file, const Setup& s, const std::vector<std::string>& units, const Chart& chart) {
-  std::vector<Column> table{
-      {s.parameter, units[0], "first parameter", {}}, {s.second, units[1], "second parameter", {}}, {"residual", "-", "of the defining system", {}}};
-  TextColumn names{"curve", "curve the point lies on", {}},
-      types{"type", "CP cusp, DP degenerate pitchfork, FP fold and pitchfork, PP two pitchforks, MIN and MAX of the second parameter", {}};
-  for (const auto& curve : chart.curves)
-    for (const auto& z : curve.special) {
-      const Eigen::Index last = z.u.size() - 1;
-      table[0].values.push_back(z.u[last - 1]);
-      table[1].values.push_back(z.u[last]);
-      table[2].values.push_back(z.residual);
-      names.values.push_back(curve.name);
-      types.values.push_back(z.type);
-    }
-  file.table("/curve_points", table, {names, types});
-}
-
-std::string chart_text(const Setup& s, const Chart& chart) {
-  std::string out = fmt::format("{:<8} {:<6} {:>22} {:>26} {:>9}\n", "curve", "point", s.parameter, s.second, "residual");
-  for (const auto& c : chart.curves)
-    for (const auto& z : c.special)
-      out += fmt::format("{:<8} {:<6} {:>22.11f} {:>26.11f} {:>9.1e}\n", c.name, z.type, z.u[z.u.size() - 2], z.u[z.u.size() - 1], z.residual);
-  for (const auto& c : chart.curves)
-    out += fmt::format("curve {:<8} {:>5} points, born at {}, ends: {}, {}\n", c.name, c.u.cols(), c.born_at, to_string(c.start_reason),
-                       to_string(c.stop_reason));
-  return out;
+  return all;
 }
 
 void verify(const Setup& s, const OrbitBranches& orbits, ResultFile& file, RunContext& context) {
@@ -302,14 +266,19 @@ ExitStatus run(const Configuration& c, RunContext& context) {
   if (branches.empty()) context.warn("no periodic motion was found in the range");
   output.write_special_points(file, branches);
   file.flush();
-  if (context.json) fmt::print("{}", output.json(branches));
   if (!context.quiet) fmt::print(stderr, "{}", output.text(branches));
   if (!interrupted) verify(s, orbits, file, context);
+  std::string chart_json;
   if (!s.second.empty() && !interrupted) {
-    const Chart chart = follow_all(c, s, orbits, file, context);
-    const auto units = forced_system_of(c, {s.parameter, s.second}).lens_units;
-    write_chart_points(file, s, units, chart);
-    if (!context.quiet) fmt::print(stderr, "\n{}", chart_text(s, chart));
+    const FollowedChart chart = follow_all(c, s, orbits, file, context);
+    chart.output.write_points(file, "/curve_points", chart.curves);
+    chart_json = fmt::format(",\n  \"curve_points\": [{}\n  ],\n  \"curves\": [{}\n  ]", chart.output.points_json(chart.curves),
+                             ChartOutput::curves_json(chart.curves));
+    if (!context.quiet) fmt::print(stderr, "\n{}", chart.output.text(chart.curves));
+  }
+  if (context.json) {
+    std::string all = output.json(branches);
+    fmt::print("{}", all.insert(all.rfind("\n}"), chart_json));
   }
   return finish(file, context, branches);
 }

@@ -4,8 +4,10 @@
 
 #include <cmath>
 
-#include "continuation/two_parameter.hpp"
+#include "continuation/chart.hpp"
+#include "continuation/held_problem.hpp"
 #include "studies/branch_output.hpp"
+#include "studies/chart_output.hpp"
 #include "studies/common_keys.hpp"
 #include "studies/equilibrium_source.hpp"
 
@@ -16,10 +18,11 @@ using namespace continuation;
 
 struct Setup {
   std::unique_ptr<EquilibriumSource> source;
-  std::string first, second;
+  std::string first, chart_first, second;  // of the branches and of the chart: most often the same
   NetworkOptions network;
   TwoParameterOptions follow;
-  std::vector<std::string> curves;
+  std::vector<EventType> curves;
+  bool leaves_first() const { return chart_first != first; }
 };
 
 Schema schema() {
@@ -30,6 +33,14 @@ Schema schema() {
   s.add({.name = "continuation.peaks",
          .description = "variables or amplitudes whose extrema along the branches are special points (RP)",
          .default_value = std::vector<std::string>{}});
+  s.add({.name = "first.parameter",
+         .description = "first parameter of the chart; \"\": that of the branches, which else is held at the value it has at each special point",
+         .default_value = std::string("")});
+  s.add({.name = "first.range",
+         .description = "its lower and upper end, if it is not that of the branches",
+         .default_value = std::vector<double>{},
+         .optional = true,
+         .max_items = 2});
   s.add({.name = "second.parameter",
          .description = "the other parameter of the chart; its value in this file is where the special points are looked for first",
          .default_value = std::string("support_motion.amplitude")});
@@ -40,11 +51,33 @@ Schema schema() {
          .min_items = 2,
          .max_items = 2,
          .example = Value{std::vector<double>{0.05, 0.8}}});
+  s.add({.name = "second.user_values",
+         .description = "values of the second parameter at which points of every curve are listed (UZ)",
+         .default_value = std::vector<double>{}});
   s.add({.name = "second.curves",
          .description = "which special points to follow",
          .default_value = std::vector<std::string>{"LP", "BP", "HB", "RP"},
          .choices = {"LP", "BP", "HB", "RP"}});
   return s;
+}
+
+// A first parameter of the chart's own.
+void read_first(const Configuration& c, Setup& s) {
+  s.chart_first = c.text("first.parameter").empty() ? s.first : c.text("first.parameter");
+  const auto range = c.has("first.range") ? c.numbers("first.range") : std::vector<double>{};
+  if (!s.leaves_first()) {
+    if (!range.empty())
+      throw c.error("first.range", "goes with a first.parameter other than continuation.parameter, whose range is continuation.range");
+    return;
+  }
+  if (range.size() != 2 || !(range[0] < range[1])) throw c.error("first.range", "must hold two increasing values, the ends of first.parameter");
+  if (s.chart_first == s.second) throw c.error("first.parameter", "must differ from second.parameter");
+  s.source->check_lens("first.parameter", s.chart_first, "first.range", range[0], range[1]);
+  const double value = s.source->value(s.chart_first);
+  if (value < range[0] || value > range[1])
+    throw c.error("first.range", fmt::format("must contain the value {:g} that {} has in this file", value, s.chart_first));
+  s.follow.range1[0] = range[0];
+  s.follow.range1[1] = range[1];
 }
 
 Setup setup(const Configuration& c) {
@@ -65,115 +98,99 @@ Setup setup(const Configuration& c) {
     throw c.error("second.range", fmt::format("must contain the value {:g} that {} has in this file", value, s.second));
   if (s.first == s.second) throw c.error("second.parameter", "must differ from continuation.parameter");
   s.follow.walk = s.network.walk;
-  for (int i = 0; i < 2; ++i) {
-    s.follow.range1[i] = i == 0 ? s.network.walk.lower : s.network.walk.upper;
-    s.follow.range2[i] = range[static_cast<std::size_t>(i)];
-  }
-  s.curves = c.texts("second.curves");
+  s.follow.walk.user_values = c.numbers("second.user_values");
+  for (const double x : s.follow.walk.user_values)
+    if (x < range[0] || x > range[1]) throw c.error("second.user_values", fmt::format("must lie in second.range, got {:g}", x));
+  s.follow.range1[0] = s.network.walk.lower;
+  s.follow.range1[1] = s.network.walk.upper;
+  s.follow.range2[0] = range[0];
+  s.follow.range2[1] = range[1];
+  read_first(c, s);
+  for (const auto& name : c.texts("second.curves"))
+    for (const EventType type : {EventType::fold, EventType::branch_point, EventType::hopf, EventType::peak})
+      if (name == to_string(type)) s.curves.push_back(type);
   return s;
 }
 
 std::vector<std::string> check(const Configuration& c) { return setup(c).source->warnings(); }
 
-void write_curve(ResultFile& file, const Setup& s, const Problem& flow2, const DefiningCurve& curve) {
-  const int n = flow2.size();
-  const auto column = [&](const std::string& name, const std::string& unit, const std::string& description, auto value) {
-    Column c{name, unit, description, {}};
-    for (Eigen::Index i = 0; i < curve.u.cols(); ++i) c.values.push_back(value(i));
-    return c;
+// The special points of the branches, each followed in the chart's two parameters.
+class Charts {
+ public:
+  Charts(const Setup& s, ResultFile& file, RunContext& context);
+  void follow(const std::vector<Branch>& branches, const Observer& observer);
+  const ChartOutput& output() const { return output_; }
+  const std::vector<ChartCurve>& curves() const { return curves_; }
+
+ private:
+  // The chart's two parameters; the branches' own, where it is none of them, held.
+  struct HeldChart {
+    double held;
+    std::unique_ptr<HeldProblem> problem;
+    std::unique_ptr<Chart> chart;
   };
-  const std::string group = "/curves/" + curve.name;
-  std::vector<Column> table = {column(s.first, s.source->unit(s.first), "first parameter", [&](auto i) { return curve.u(n, i); }),
-                               column(s.second, s.source->unit(s.second), "second parameter", [&](auto i) { return curve.u(n + 1, i); })};
-  for (const auto& c : s.source->columns(flow2))
-    table.push_back(column(c.name, c.unit, c.description, [&](auto i) { return c.value(curve.u.col(i)); }));
-  table.push_back(column("coefficient", "-", "normal-form coefficient", [&](auto i) { return curve.coefficient[i]; }));
-  table.push_back(column("frequency", "rad/s", "Hopf curves", [&](auto i) { return curve.frequency[i]; }));
-  table.push_back(column("residual", "-", "largest residual of the defining system", [&](auto i) { return curve.residual[i]; }));
-  file.table(group, table);
-  file.attribute(group, "type", std::string(to_string(curve.type)));
-  file.attribute(group, "subtype", curve.subtype);
-  file.attribute(group, "born_at", curve.born_at);
-  file.attribute(group, "start_reason", std::string(to_string(curve.start_reason)));
-  file.attribute(group, "stop_reason", std::string(to_string(curve.stop_reason)));
+  Chart& chart_at(double held, const Observer& observer);
+
+  const Setup& s_;
+  ResultFile& file_;
+  RunContext& context_;
+  std::unique_ptr<Problem> problem_;
+  ChartOutput output_;
+  std::vector<HeldChart> charts_;  // one for each value held
+  std::vector<ChartCurve> curves_;
+};
+
+Charts::Charts(const Setup& s, ResultFile& file, RunContext& context)
+    : s_(s),
+      file_(file),
+      context_(context),
+      problem_(s.source->problem(s.leaves_first() ? std::vector{s.chart_first, s.second, s.first} : std::vector{s.first, s.second})),
+      output_{s.chart_first, s.source->unit(s.chart_first), s.second, s.source->unit(s.second)} {
+  if (!s.leaves_first()) return;
+  output_.held = s.first;
+  output_.held_unit = s.source->unit(s.first);
 }
 
-// Distance of two states up to the mirror images under the problem's reflections.
-double apart_up_to_mirror(const Problem& f, In a, In b) {
-  const int n = f.size();
-  double least = (a.head(n) - b.head(n)).norm();
-  for (const auto& r : f.reflections()) least = std::min(least, (a.head(n) - r.signs.cwiseProduct(b.head(n))).norm());
-  return least;
+Chart& Charts::chart_at(double held, const Observer& observer) {
+  for (auto& c : charts_)
+    if (!s_.leaves_first() || c.held == held) return *c.chart;
+  HeldChart c{held, s_.leaves_first() ? std::make_unique<HeldProblem>(*problem_, held) : nullptr, nullptr};
+  c.chart = std::make_unique<Chart>(c.problem ? *c.problem : *problem_, s_.follow);
+  c.chart->want(s_.curves);
+  c.chart->set_observer(observer);
+  c.chart->on_warning([this](const std::string& text) { context_.warn(text); });
+  c.chart->on_curve([this, held](DefiningCurve& curve) {
+    curve.name = fmt::format("{}{}", curve.subtype.empty() ? to_string(curve.type) : curve.subtype.c_str(), curves_.size() + 1);
+    curves_.push_back({curve, held, s_.source->columns(*problem_)});
+    output_.write_curve(file_, curves_.back());
+    file_.flush();
+    context_.progress.show(fmt::format("curve {}", curve.name));
+  });
+  charts_.push_back(std::move(c));
+  return *charts_.back().chart;
 }
 
-// Is the special point on a curve already followed?
-bool on_known_curve(const Problem& f, const std::vector<DefiningCurve>& curves, const SpecialPoint& p, double p2, const Setup& s) {
-  const int n = f.size();
-  const double w1 = s.follow.range1[1] - s.follow.range1[0], w2 = s.follow.range2[1] - s.follow.range2[0];
-  for (const auto& c : curves) {
-    if (c.type != p.type || c.subtype != p.subtype) continue;
-    for (Eigen::Index i = 0; i + 1 < c.u.cols(); ++i) {
-      const Vector a = c.u.col(i), b = c.u.col(i + 1);
-      if ((a[n + 1] - p2) * (b[n + 1] - p2) > 0.0 || a[n + 1] == b[n + 1]) continue;
-      const double t = (p2 - a[n + 1]) / (b[n + 1] - a[n + 1]), chord = std::hypot((b[n] - a[n]) / w1, (b[n + 1] - a[n + 1]) / w2);
-      const Vector at = a + t * (b - a);
-      // Up to the bend of the curve between two of its points, and up to the mirror image.
-      if (std::abs(at[n] - p.u[n]) / w1 < 0.1 * chord + 1e-9 && apart_up_to_mirror(f, at, p.u) < 0.2 * (b - a).head(n).norm() + 1e-6) return true;
+void Charts::follow(const std::vector<Branch>& branches, const Observer& observer) {
+  for (const auto& b : branches)
+    for (std::size_t i = 0; i < b.special.size() && !interrupted; ++i) {
+      SpecialPoint point = b.special[i];
+      // The same point stands on the branch whose symmetry breaks there.
+      const bool arrival =
+          point.type == EventType::branch_point && point.block == 0 && i + 1 == b.special.size() && b.stop_reason == StopReason::symmetric_branch;
+      if (arrival) continue;
+      double& first = point.u[point.u.size() - 1];
+      const double held = s_.leaves_first() ? first : std::nan("");
+      if (s_.leaves_first()) first = s_.source->value(s_.chart_first);
+      chart_at(held, observer).follow_from(point, s_.source->value(s_.second), fmt::format("{}:{}", b.name, label(b, i)));
     }
-  }
-  return false;
-}
-
-// Does a curve lie on one followed before? Where most of its points do.
-bool repeats(const Problem& f, const std::vector<DefiningCurve>& curves, const DefiningCurve& curve, const Setup& s) {
-  const int n = f.size();
-  int known = 0, asked = 0;
-  for (int part = 1; part < 6; ++part, ++asked) {
-    const Vector u = curve.u.col(part * (curve.u.cols() - 1) / 6);
-    SpecialPoint at;
-    at.type = curve.type;
-    at.subtype = curve.subtype;
-    at.u = u.head(n + 1);
-    known += on_known_curve(f, curves, at, u[n + 1], s) ? 1 : 0;
-  }
-  return 2 * known > asked;
-}
-
-std::string json(const Setup& s, int n, const std::vector<PointColumn>& columns, const std::vector<DefiningCurve>& curves) {
-  std::string points, summary;
-  for (const auto& c : curves) {
-    for (const auto& z : c.special) {
-      std::string state;
-      for (const auto& column : columns)
-        if (const double x = column.value(z.u); std::isfinite(x)) state += fmt::format(R"(, "{}": {:.17g})", column.name, x);
-      points += fmt::format(R"({}    {{"curve": "{}", "type": "{}", "{}": {:.17g}, "{}": {:.17g}{}, "residual": {:.3g}}})",
-                            points.empty() ? "\n" : ",\n", c.name, z.type, s.first, z.u[n], s.second, z.u[n + 1], state, z.residual);
-    }
-    summary += fmt::format(
-        R"({}    {{"name": "{}", "type": "{}", "subtype": "{}", "born_at": "{}", "points": {}, "start_reason": "{}", "stop_reason": "{}"}})",
-        summary.empty() ? "\n" : ",\n", c.name, to_string(c.type), c.subtype, c.born_at, c.u.cols(), to_string(c.start_reason),
-        to_string(c.stop_reason));
-  }
-  return fmt::format("{{\n  \"special_points\": [{}\n  ],\n  \"curves\": [{}\n  ]\n}}\n", points, summary);
-}
-
-std::string text(const Setup& s, int n, const std::vector<DefiningCurve>& curves) {
-  std::string out = fmt::format("{:<8} {:<6} {:>22} {:>26} {:>9}\n", "curve", "point", fmt::format("{} [{}]", s.first, s.source->unit(s.first)),
-                                fmt::format("{} [{}]", s.second, s.source->unit(s.second)), "residual");
-  for (const auto& c : curves)
-    for (const auto& z : c.special)
-      out += fmt::format("{:<8} {:<6} {:>22.11f} {:>26.11f} {:>9.1e}\n", c.name, z.type, z.u[n], z.u[n + 1], z.residual);
-  for (const auto& c : curves)
-    out += fmt::format("curve {:<8} {:>5} points, born at {}, ends: {}, {}\n", c.name, c.u.cols(), c.born_at, to_string(c.start_reason),
-                       to_string(c.stop_reason));
-  return out;
+  for (auto& c : charts_)
+    if (!interrupted) c.chart->follow_meetings();  // curves met on the way lead to further ones
 }
 
 ExitStatus run(const Configuration& c, RunContext& context) {
   const Setup s = setup(c);
   for (const auto& w : s.source->warnings()) context.warn(w);
-  const auto f = s.source->problem({s.first}), f2 = s.source->problem({s.first, s.second});
-  const int n = f->size();
+  const auto f = s.source->problem({s.first});
   ResultFile file(context.output);
   write_study(file, c);
   s.source->write(file);
@@ -186,65 +203,20 @@ ExitStatus run(const Configuration& c, RunContext& context) {
     try_seed(net, start.u, start.origin, context);
     net.switch_branches();
   }
-  std::vector<DefiningCurve> curves;
-  const auto follow_from = [&](const SpecialPoint& point, double p2, const std::string& origin, bool told) {
-    const bool wanted = std::find(s.curves.begin(), s.curves.end(), to_string(point.type)) != s.curves.end();
-    if (interrupted || !wanted || on_known_curve(*f, curves, point, p2, s)) return;
-    DefiningCurve curve;
-    try {
-      curve = follow(*f2, point, p2, s.follow, observer);
-    } catch (const std::invalid_argument& e) {
-      if (told) context.warn(fmt::format("{}: {}", origin, e.what()));
-      return;
-    }
-    if (!told && repeats(*f, curves, curve, s)) return;
-    curve.name = fmt::format("{}{}", point.subtype.empty() ? to_string(point.type) : point.subtype.c_str(), curves.size() + 1);
-    curve.born_at = origin;
-    write_curve(file, s, *f2, curve);
-    file.flush();
-    context.progress.show(fmt::format("curve {}", curve.name));
-    curves.push_back(std::move(curve));
-  };
-  for (const auto& b : net.branches())
-    for (std::size_t i = 0; i < b.special.size(); ++i) {
-      const auto& point = b.special[i];
-      // The same point stands on the branch whose symmetry breaks there.
-      const bool arrival =
-          point.type == EventType::branch_point && point.block == 0 && i + 1 == b.special.size() && b.stop_reason == StopReason::symmetric_branch;
-      if (!arrival) follow_from(point, s.source->value(s.second), fmt::format("{}:{}", b.name, label(b, i)), true);
-    }
-  for (std::size_t k = 0; k < curves.size(); ++k) {  // curves met on the way lead to further ones
-    const std::vector<CodimensionTwo> met = curves[k].special;
-    for (const auto& z : met)
-      for (const SpecialPoint& start : curves_through(*f2, curves[k], z))
-        follow_from(start, z.u[n + 1], fmt::format("{}:{}", curves[k].name, z.type), false);
-  }
+  Charts charts(s, file, context);
+  charts.follow(net.branches(), observer);
   context.progress.clear();
-  std::vector<Column> table{{s.first, s.source->unit(s.first), "first parameter", {}},
-                            {s.second, s.source->unit(s.second), "second parameter", {}},
-                            {"residual", "-", "of the defining system", {}}};
-  TextColumn names{"curve", "curve the point lies on", {}},
-      types{"type",
-            "CP cusp, BT Bogdanov-Takens, ZH zero-Hopf, GH generalised Hopf, HH double Hopf, "
-            "DP degenerate pitchfork, FP fold and pitchfork, PP two pitchforks, MIN and MAX of the second parameter",
-            {}};
-  for (const auto& curve : curves)
-    for (const auto& z : curve.special) {
-      table[0].values.push_back(z.u[n]);
-      table[1].values.push_back(z.u[n + 1]);
-      table[2].values.push_back(z.residual);
-      names.values.push_back(curve.name);
-      types.values.push_back(z.type);
-    }
-  for (const auto& coordinate : s.source->columns(*f2)) {
-    Column state{coordinate.name, coordinate.unit, coordinate.description, {}};
-    for (const auto& curve : curves)
-      for (const auto& z : curve.special) state.values.push_back(coordinate.value(z.u));
-    table.push_back(std::move(state));
+  const auto& curves = charts.curves();
+  charts.output().write_points(file, "/special_points", curves);
+  if (context.json)
+    fmt::print("{{\n  \"special_points\": [{}\n  ],\n  \"curves\": [{}\n  ]\n}}\n", charts.output().points_json(curves),
+               ChartOutput::curves_json(curves));
+  if (!context.quiet) fmt::print(stderr, "{}", charts.output().text(curves));
+  if (curves.empty()) {
+    const auto& walk = s.network.walk;
+    context.warn(fmt::format("no {} with {} in [{:g}, {:g}]: no chart",
+                             net.branches().empty() ? "equilibrium was found" : "special point lies on a branch", s.first, walk.lower, walk.upper));
   }
-  file.table("/special_points", table, {names, types});
-  if (context.json) fmt::print("{}", json(s, n, s.source->columns(*f2), curves));
-  if (!context.quiet) fmt::print(stderr, "{}", text(s, n, curves));
   return finish(file, context, net.branches());
 }
 
