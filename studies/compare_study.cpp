@@ -62,6 +62,7 @@ Setup setup(const Configuration& c) {
   s.levels.order = static_cast<int>(c.integer("response.order"));
   s.levels.complete_harmonics = static_cast<int>(c.integer("compare.harmonics"));
   s.levels.orbits.seed_grid = static_cast<int>(c.integer("seeds.grid"));
+  s.levels.orbits.check.starts = 0;  // the sweep is the check by integration here
   s.tolerance = c.number("compare.tolerance");
   s.sweep_points = static_cast<int>(c.integer("sweep.points"));
   s.sweep_tolerance = c.number("sweep.tolerance");

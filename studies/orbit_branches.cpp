@@ -30,7 +30,8 @@ OrbitBranches::OrbitBranches(ForcedSystem source, OrbitBranchOptions options, Ru
     : source_(std::move(source)),
       options_(std::move(options)),
       context_(context),
-      harmonics_(options_.harmonics > 0 ? options_.harmonics : first_harmonics * options_.nu) {}
+      harmonics_(options_.harmonics > 0 ? options_.harmonics : first_harmonics * options_.nu),
+      check_(source_, options_.check) {}
 
 const HarmonicBalance& OrbitBranches::balance(int level) const { return dynamic_cast<const HarmonicBalance&>(net_->problem(level)); }
 
@@ -118,6 +119,83 @@ void OrbitBranches::seed_integrated() {
   }
 }
 
+// All averaged motions about the resonances, at each level those of its period.
+void OrbitBranches::seed_averaged() {
+  const auto& walk = options_.network.walk;
+  if (!averaged_) {
+    std::vector<double> values;
+    for (int i = 0; i < options_.seed_grid; ++i) values.push_back(walk.lower + (walk.upper - walk.lower) * (i + 0.5) / options_.seed_grid);
+    averaged_ = std::make_unique<OrbitSeeds>(source_, values, levels() > 1 ? 2 * options_.nu : options_.nu);
+  }
+  for (int level = 0; level < std::min(levels(), 2); ++level)
+    for (int i = 0; i < averaged_->size(); ++i) {
+      if (net_->stopped() || interrupted) return;
+      for (const Vector& u : averaged_->motions(balance(level), i))
+        if (!net_->stopped()) net_->add_seed(u, fmt::format("averaged motion at {:.6g}", averaged_->value(i)), level);
+    }
+}
+
+// The branch that holds a motion met by integration; "" and its unknowns where none does, level -1 where no level has its period.
+std::string OrbitBranches::branch_of(const SteadyMotion& motion, double p, int& level, Vector& u) const {
+  level = -1;
+  if (motion.kind != MotionKind::periodic) return "";
+  for (int i = 0; i < levels() && level < 0; ++i)
+    if (period(i) % motion.multiple == 0) level = i;
+  if (level < 0) return "";
+  const HarmonicBalance& hb = balance(level);
+  const NewtonResult at = newton(hb, hb.from_motion(motion, Vector::Constant(1, p)));
+  if (!at.ok()) {
+    level = -1;
+    return "";
+  }
+  u = at.x;
+  const double size = largest_motion().norm();
+  for (const auto& [branch, known] : network(level).solutions_at(p))
+    if (OrbitSeeds::alike(hb, known, u, size)) return network(level).branches()[static_cast<std::size_t>(branch)].name;
+  return "";
+}
+
+// Largest amplitude of each coordinate on all branches: the sum of its harmonics' at sampled points.
+Vector OrbitBranches::largest_motion() const {
+  Vector size = Vector::Zero(static_cast<Eigen::Index>(source_.coordinates.size()));
+  for (int level = 0; level < levels(); ++level) {
+    const HarmonicBalance& hb = balance(level);
+    for (const auto& b : network(level).branches())
+      for (int k = 0; k < b.points(); k += std::max(1, b.points() / truncation_samples))
+        size = size.cwiseMax(hb.observe(b.u(k)).cwiseAbs().rowwise().sum());
+  }
+  return size;
+}
+
+// What the walk has cost, as a number of excitation periods integrated. Microseconds of a point of n unknowns (assembly in blocks, elimination,
+// multipliers, its share of the special points) and of a period (steps of thirteen stages, the polish of attractors), both as measured on one core.
+double OrbitBranches::walked_periods() const {
+  constexpr double point_linear = 2.0, point_cubic = 1e-4, period_constant = 4.0, period_per_operation = 0.35;
+  double walk = 0.0;
+  for (int level = 0; level < levels(); ++level) {
+    const double n = balance(level).size();
+    for (const auto& b : network(level).branches()) walk += b.points() * (point_linear * n + point_cubic * n * n * n);
+  }
+  const FlatFlow field(source_.at(Vector::Constant(1, options_.network.walk.lower)));
+  return walk / (period_constant + period_per_operation * (field.products() + 8.0 * field.coordinates()));
+}
+
+// Starts are integrated once, where everything else has been found; motions met that no branch holds start branches in every pass.
+void OrbitBranches::seed_attractors() {
+  const auto& walk = options_.network.walk;
+  if (!check_.done()) check_.integrate(walk.lower, walk.upper, largest_motion(), walked_periods(), context_);
+  for (const bool last : {false, true}) {
+    for (auto& m : check_.met()) {
+      if (net_->stopped() || interrupted) return;
+      int level = -1;
+      Vector u;
+      m.branch = branch_of(m.motion.motion, m.p, level, u);
+      if (!last && m.branch.empty() && level >= 0) net_->add_seed(u, fmt::format("integrated motion at {:.6g}", m.p), level);
+    }
+    net_->switch_branches();
+  }
+}
+
 bool OrbitBranches::pass() {
   needed_ = 0;
   net_.reset();
@@ -136,14 +214,11 @@ bool OrbitBranches::pass() {
   });
   net_->on_branch([this](const Branch& b, int level) { judge(b, level); });
   seed_linear();
-  if (starts_)
-    for (const Vector& start : starts_(*balance_)) {
-      if (net_->stopped()) break;
-      const NewtonResult at = newton(*balance_, start);
-      if (at.ok()) net_->add_seed(at.x, fmt::format("averaged motion at {:.6g}", start[start.size() - 1]));
-    }
+  net_->switch_branches();
+  seed_averaged();
   if (!options_.seeds.empty() && !net_->stopped()) seed_integrated();
   net_->switch_branches();
+  if (!net_->stopped()) seed_attractors();
   return needed_ == 0 || interrupted;
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 /// Branches of exact periodic motion of a forced modal system: harmonic balance with as many harmonics as the truncation asks for, walked from the
-/// linear response, from averaged and from integrated motions, through branch points and period doublings.
+/// linear response, from averaged and from integrated motions, through branch points and period doublings. In the end starts are integrated, and
+/// where they settle on a motion that no branch holds, that motion starts another branch.
 ///
 ///     OrbitBranches orbits(system, options, context);
 ///     orbits.on_branch([&](const Branch& b, int level) { ... });
@@ -11,8 +12,8 @@
 /// needs. Throws std::invalid_argument for options out of range.
 
 #include "continuation/orbit_network.hpp"
-#include "studies/forced_system.hpp"
-#include "studies/run_context.hpp"
+#include "studies/attractor_check.hpp"
+#include "studies/orbit_seeds.hpp"
 
 namespace whirl::studies {
 
@@ -27,6 +28,7 @@ struct OrbitBranchOptions {
   std::vector<Vector> seeds;        ///< further starts: values of q at rest, integrated at every `seed_values`
   std::vector<double> seed_values;  ///< parameter values
   models::SettleOptions settle;
+  AttractorCheckOptions check;  ///< integration from starts, in the end
 };
 
 class OrbitBranches {
@@ -36,8 +38,6 @@ class OrbitBranches {
   OrbitBranches(ForcedSystem source, OrbitBranchOptions options, RunContext& context);
 
   void on_branch(OnBranch f) { on_branch_ = std::move(f); }
-  /// Start values in the unknowns of `balance(0)`, asked for in every pass.
-  void add_starts(std::function<std::vector<Vector>(const models::HarmonicBalance&)> starts) { starts_ = std::move(starts); }
   void find();
 
   const ForcedSystem& source() const { return source_; }
@@ -55,12 +55,18 @@ class OrbitBranches {
     bool stable;
   };
   std::vector<Motion> motions_at(double p) const;
+  const AttractorCheck& check() const { return check_; }
 
  private:
   bool pass();  // false: more harmonics are needed
   void judge(const continuation::Branch& b, int level);
   void seed_linear();
+  void seed_averaged();
   void seed_integrated();
+  void seed_attractors();
+  std::string branch_of(const models::SteadyMotion& motion, double p, int& level, Vector& u) const;
+  double walked_periods() const;
+  Vector largest_motion() const;
   struct Settled {
     double p;
     models::SteadyMotion motion;
@@ -76,7 +82,8 @@ class OrbitBranches {
   std::unique_ptr<models::HarmonicBalance> balance_;
   std::unique_ptr<continuation::OrbitNetwork> net_;
   OnBranch on_branch_;
-  std::function<std::vector<Vector>(const models::HarmonicBalance&)> starts_;
+  std::unique_ptr<OrbitSeeds> averaged_;  // made in the first pass
+  AttractorCheck check_;
 };
 
 }  // namespace whirl::studies

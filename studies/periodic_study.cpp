@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include "continuation/two_parameter.hpp"
-#include "models/closed_forms.hpp"
 #include "studies/common_keys.hpp"
 #include "studies/orbit_output.hpp"
 
@@ -37,13 +36,18 @@ void add_periodic_keys(Schema& s) {
 }
 
 void add_seed_keys(Schema& s) {
-  s.add_count("seeds.grid", "parameter values at which the linear response (and a cable's averaged motions) start branches", 9, 1, 10000);
+  s.add_count("seeds.grid", "parameter values at which the linear response and all averaged motions start branches", 9, 1, 10000);
   s.add({.name = "seeds.values",
          .description = "parameter values at which integrated motions start branches that nothing else reaches",
          .default_value = std::vector<double>{}});
   s.add({.name = "seeds.starts",
          .description = "displacements at rest from which to integrate there, one for each coordinate, start after start",
          .default_value = std::vector<double>{}});
+  s.add_count("seeds.check",
+              "starts integrated at each value of seeds.check_values, to see whether a stable motion is missing; 0: none; without it at most 10, and "
+              "fewer where that would cost more than the branches",
+              10, 0, 100000);
+  s.add_count("seeds.check_values", "parameter values, evenly in the range, at which they are integrated", 12, 1, 10000);
   s.add({.name = "seeds.max_periods",
          .description = "excitation periods after which a start counts as not settled",
          .default_value = std::int64_t{3000},
@@ -120,6 +124,9 @@ Setup setup(const Configuration& c) {
   s.orbits.seed_grid = static_cast<int>(c.integer("seeds.grid"));
   s.orbits.seed_values = c.numbers("seeds.values");
   s.orbits.settle.max_periods = static_cast<int>(c.integer("seeds.max_periods"));
+  s.orbits.check.starts = static_cast<int>(c.integer("seeds.check"));
+  s.orbits.check.values = static_cast<int>(c.integer("seeds.check_values"));
+  s.orbits.check.bounded = !c.is_given("seeds.check") && !c.is_given("seeds.check_values");
   s.orbits.seeds = starts_of(c, forced_system_of(c, {s.parameter}).coordinates.size());
   if (s.orbits.seed_values.empty() != s.orbits.seeds.empty()) throw c.error("seeds.values", "and seeds.starts go together");
   s.shown_harmonics = static_cast<int>(c.integer("periodic.amplitudes"));
@@ -133,33 +140,6 @@ Setup setup(const Configuration& c) {
 std::vector<std::string> check(const Configuration& c) {
   (void)setup(c);
   return check_forced_system(c);
-}
-
-// The averaged motions of a two-mode cable as starts: they reach what no branch of the linear response leads to.
-std::vector<Vector> averaged_starts(const Configuration& c, const Setup& s, const HarmonicBalance& hb) {
-  std::vector<Vector> starts;
-  if (!c.has("cable.chord_length") || hb.coordinates() != 2 || hb.nu() != 1) return starts;
-  for (const int n : {2, 3}) {
-    const SuperharmonicFlow flow(stay_of(c), {n, coefficients_of(c)}, {Lens(s.parameter)});
-    for (int i = 0; i < s.orbits.seed_grid; ++i) {
-      const auto& walk = s.orbits.network.walk;
-      const double p = walk.lower + (walk.upper - walk.lower) * (i + 0.5) / s.orbits.seed_grid;
-      const auto k = flow.model().coefficients<double>(std::array<double, 1>{p});
-      for (const auto& states : {in_plane_states(k), coupled_states(k)})
-        for (const auto& x : states) {
-          Vector u = Vector::Zero(hb.size() + 1);
-          u[hb.size()] = p;
-          for (int q = 0; q < 2 && n <= hb.harmonics(); ++q) {  // Z = u + i v stands for u cos - v sin
-            u[hb.index(q, n)] = x[2 * q];
-            u[hb.index(q, n) + 1] = -x[2 * q + 1];
-          }
-          u[hb.index(1, 1)] = k.Z0_re;
-          u[hb.index(1, 1) + 1] = -k.Z0_im;
-          starts.push_back(u);
-        }
-    }
-  }
-  return starts;
 }
 
 void write_curve(ResultFile& file, const Setup& s, const std::vector<std::string>& units, const DefiningCurve& curve) {
@@ -279,6 +259,12 @@ void verify(const Setup& s, const OrbitBranches& orbits, ResultFile& file, RunCo
       context.warn(fmt::format("the motion of {} at {:g} misses its start by {:.1e} when integrated", check.motion.branch, check.p, check.defect));
 }
 
+// A JSON object with one more member at its end.
+std::string with_member(std::string object, const std::string& key, const std::string& value) {
+  object.erase(object.find_last_not_of("}\n") + 1);
+  return fmt::format("{},\n  \"{}\": {}\n}}\n", object, key, value);
+}
+
 ExitStatus run(const Configuration& c, RunContext& context) {
   const Setup s = setup(c);
   for (const auto& w : check_forced_system(c)) context.warn(w);
@@ -287,7 +273,6 @@ ExitStatus run(const Configuration& c, RunContext& context) {
   write_forced_system(file, c);
   OrbitBranches orbits(forced_system_of(c, {s.parameter}), s.orbits, context);
   const BranchOutput output = orbit_output(orbits, s.parameter, s.shown_harmonics);
-  orbits.add_starts([&](const HarmonicBalance& hb) { return averaged_starts(c, s, hb); });
   orbits.on_branch([&](const Branch& b, int level, double error) {
     output.write_branch(file, b);
     file.attribute("/branches/" + b.name, "period", static_cast<double>(orbits.period(level)));
@@ -302,8 +287,15 @@ ExitStatus run(const Configuration& c, RunContext& context) {
   if (branches.empty()) context.warn("no periodic motion was found in the range");
   output.write_special_points(file, branches);
   file.flush();
-  if (context.json) fmt::print("{}", output.json(branches));
+  const AttractorCheck& settled = orbits.check();
+  settled.write(file, s.parameter);
+  file.flush();
+  if (context.json) fmt::print("{}", with_member(output.json(branches), "attractor_check", settled.json(s.parameter)));
   if (!context.quiet) fmt::print(stderr, "{}", output.text(branches));
+  if (const std::string text = settled.text(s.parameter); !text.empty()) {
+    if (!settled.complete()) context.warn(text);
+    else if (!context.quiet) fmt::print(stderr, "{}\n", text);
+  }
   if (!interrupted) verify(s, orbits, file, context);
   if (!s.second.empty() && !interrupted) {
     const Chart chart = follow_all(c, s, orbits, file, context);
