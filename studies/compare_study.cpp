@@ -299,6 +299,7 @@ std::vector<Row> map_errors(const Configuration& c, const Setup& s, RunContext& 
                       {"rad/s"}};
     CompareOptions o = s.levels;
     o.orbits.period_doublings = 0;
+    o.orbits.averaged_seeds = false;
     o.orbits.truncation_tolerance = 1e-6;
     RunContext quiet;
     const Levels levels = walk_levels(held, o, closed_forms(c, o.order, s.second, row.second), quiet, false);

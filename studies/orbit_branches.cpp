@@ -119,13 +119,16 @@ void OrbitBranches::seed_integrated() {
   }
 }
 
-// All averaged motions about the resonances, at each level those of its period.
+// All averaged motions about the resonances, at each level those of its period; fewer values where polishing one costs much.
 void OrbitBranches::seed_averaged() {
+  constexpr int few_coordinates = 3, sparser = 3;
   const auto& walk = options_.network.walk;
+  const bool few = static_cast<int>(source_.coordinates.size()) <= few_coordinates;
   if (!averaged_) {
+    const int count = few ? options_.seed_grid : (options_.seed_grid + sparser - 1) / sparser;
     std::vector<double> values;
-    for (int i = 0; i < options_.seed_grid; ++i) values.push_back(walk.lower + (walk.upper - walk.lower) * (i + 0.5) / options_.seed_grid);
-    averaged_ = std::make_unique<OrbitSeeds>(source_, values, levels() > 1 ? 2 * options_.nu : options_.nu);
+    for (int i = 0; i < count; ++i) values.push_back(walk.lower + (walk.upper - walk.lower) * (i + 0.5) / count);
+    averaged_ = std::make_unique<OrbitSeeds>(source_, values, OrbitSeeds::Options{.nu = options_.nu, .doubled = levels() > 1});
   }
   for (int level = 0; level < std::min(levels(), 2); ++level)
     for (int i = 0; i < averaged_->size(); ++i) {
@@ -215,7 +218,7 @@ bool OrbitBranches::pass() {
   net_->on_branch([this](const Branch& b, int level) { judge(b, level); });
   seed_linear();
   net_->switch_branches();
-  seed_averaged();
+  if (options_.averaged_seeds) seed_averaged();
   if (!options_.seeds.empty() && !net_->stopped()) seed_integrated();
   net_->switch_branches();
   if (!net_->stopped()) seed_attractors();

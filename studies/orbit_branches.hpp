@@ -25,6 +25,7 @@ struct OrbitBranchOptions {
   int max_harmonics = 120;
   int period_doublings = 1;         ///< how often a branch of doubled period is followed
   int seed_grid = 9;                ///< parameter values at which the linear response is tried
+  bool averaged_seeds = true;       ///< and all averaged motions, with deflation (OrbitSeeds)
   std::vector<Vector> seeds;        ///< further starts: values of q at rest, integrated at every `seed_values`
   std::vector<double> seed_values;  ///< parameter values
   models::SettleOptions settle;

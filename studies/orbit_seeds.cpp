@@ -33,27 +33,35 @@ Vector in_balance(const HarmonicBalance& hb, const Eigen::MatrixXcd& z, int nu, 
   return u;
 }
 
-// Does a motion hold harmonics that its repetition after a smaller number of excitation periods forbids? Of excitation period one: always.
+// Does a motion of a doubled balance hold odd harmonics, which its repetition after half the time forbids?
 bool of_full_period(const HarmonicBalance& hb, In u, double size) {
-  if (hb.nu() == 1) return true;
-  double other = 0.0;
+  double odd = 0.0;
   for (int i = 0; i < hb.coordinates(); ++i)
-    for (int k = 1; k <= hb.harmonics(); ++k)
-      if (k % hb.nu() != 0) other = std::max({other, std::abs(u[hb.index(i, k)]), std::abs(u[hb.index(i, k) + 1])});
-  return other > same * size;
+    for (int k = 1; k <= hb.harmonics(); k += 2) odd = std::max({odd, std::abs(u[hb.index(i, k)]), std::abs(u[hb.index(i, k) + 1])});
+  return odd > same * size;
+}
+
+// Those of likely_resonances, and all multiples of 1/nu between 0 and 2.
+ResonanceOptions orders(int nu) {
+  ResonanceOptions o;
+  for (int k = 1; k < 2 * nu; ++k)
+    if (k % nu != 0) o.orders.push_back(static_cast<double>(k) / nu);
+  return o;
 }
 
 }  // namespace
 
-OrbitSeeds::OrbitSeeds(const ForcedSystem& source, std::vector<double> values, int nu)
-    : values_(std::move(values)), nu_(nu), states_(values_.size()) {
-  std::map<std::vector<int>, AveragedStates> averaged;
+OrbitSeeds::OrbitSeeds(const ForcedSystem& source, std::vector<double> values, const Options& options)
+    : values_(std::move(values)), options_(options), nu_(options.doubled ? 2 * options.nu : options.nu), states_(values_.size()) {
+  std::map<std::pair<std::vector<int>, bool>, AveragedStates> averaged;
   for (std::size_t v = 0; v < values_.size() && !interrupted; ++v) {
     const ModalSystem<double> system = source.at(Vector::Constant(1, values_[v]));
-    for (const auto& harmonics : likely_resonances(system, nu_)) {
-      auto at = averaged.try_emplace(harmonics, nu_, harmonics).first;
-      for (auto& z : at->second.solve(system)) states_[v].push_back(std::move(z));
-    }
+    for (const auto& harmonics : likely_resonances(system, nu_, orders(options_.nu)))
+      for (const bool second_order : {false, true}) {
+        const AveragedStateOptions o{.second_order = second_order};
+        auto at = averaged.try_emplace({harmonics, second_order}, nu_, harmonics, o).first;
+        for (auto& z : at->second.solve(system)) states_[v].push_back(std::move(z));
+      }
   }
 }
 
@@ -72,12 +80,12 @@ bool OrbitSeeds::alike(const Problem& f, In a, In b, double size) {
 
 std::vector<Vector> OrbitSeeds::motions(const HarmonicBalance& hb, int i) const {
   std::vector<Vector> found;
-  if (hb.nu() % nu_ != 0 && nu_ % hb.nu() != 0) return found;
+  if (hb.nu() != options_.nu && hb.nu() != 2 * options_.nu) return found;
   const auto& states = states_[static_cast<std::size_t>(i)];
   double size = hb.linear_response(Vector::Constant(1, value(i))).head(hb.size()).norm();
   for (const auto& z : states) size = std::max(size, z.norm());
   const auto add_to = [&](std::vector<Vector>& list, const Vector& u) {
-    if (!of_full_period(hb, u, size)) return;
+    if (hb.nu() != options_.nu && !of_full_period(hb, u, size)) return;
     if (std::none_of(list.begin(), list.end(), [&](const Vector& other) { return alike(hb, other, u, size); })) list.push_back(u);
   };
   const auto add = [&](const Vector& u) { add_to(found, u); };
@@ -89,6 +97,7 @@ std::vector<Vector> OrbitSeeds::motions(const HarmonicBalance& hb, int i) const 
     if (at.ok()) add(at.x);
     else lost.push_back(start);
   }
+  if (hb.coordinates() > options_.deflated_up_to) return found;
   for (const Vector& u : deflated(hb, found, lost, value(i))) {
     const NewtonResult at = newton(hb, u);
     if (at.ok()) add(at.x);
@@ -120,7 +129,7 @@ std::vector<Vector> OrbitSeeds::deflated(const HarmonicBalance& hb, const std::v
   for (auto& u : starts) u = coarse->carry(hb, u);
   const std::size_t first = solved.size();
   std::vector<Vector> further;
-  const auto all = continuation::deflated_solutions(*coarse, solved, starts, {.newton = few});
+  const auto all = continuation::deflated_solutions(*coarse, solved, starts, {.newton = few, .scale = size});
   for (std::size_t k = first; k < all.size(); ++k) further.push_back(hb.carry(*coarse, all[k]));
   return further;
 }
