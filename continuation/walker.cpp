@@ -13,10 +13,10 @@
 namespace whirl::continuation {
 
 namespace {
-constexpr double rounding = 1e-11;   // |x| below that times its unit is zero: what Newton leaves of a coordinate that is zero
+constexpr double rounding = 1e-11;      // |x| below that times its unit is zero: what Newton leaves of a coordinate that is zero
 constexpr int most_neutral_points = 4;  // beside a branch point; more are neutral by nature, as without damping
-constexpr double upright = 1e8;      // slope of x against p, in units, above which a start says nothing of the size of x
-constexpr double at_a_stand = 1e-3;  // slope of the parameter, in the metric, below which a state that grows does so without bound
+constexpr double upright = 1e8;         // slope of x against p, in units, above which a start says nothing of the size of x
+constexpr double at_a_stand = 1e-3;     // slope of the parameter, in the metric, below which a state that grows does so without bound
 
 // How a walk leaves a branch point: what lies nearer to it than the first point beside it is not seen.
 struct DepartureLimits {

@@ -1,6 +1,6 @@
 #pragma once
-/// All steady states of the superharmonic slow flow at one parameter record, [NielsenKirkegaard2002, eqs (50)-(58)]: roots of polynomials, polished by
-/// Newton on the flow itself, next to folds those nearly real too. They seed every branch, also one that nothing else leads to.
+/// All steady states of the superharmonic slow flow at one parameter record, [NielsenKirkegaard2002, eqs (50)-(58)]: roots of polynomials, polished
+/// by Newton on the flow itself, next to folds those nearly real too. They seed every branch, also one that nothing else leads to.
 ///
 /// In plane (A = 0): |(D2 + g4 y) + i d2|^2 y = P^2, a cubic in y = B^2.                                                      (51)
 /// Coupled: sin 2Phi = k/y, k = d1/g2, and y cos 2Phi = +- sqrt(y^2 - k^2). With y = (k/2)(t + 1/t), y cos 2Phi = (k/2)(t - 1/t), t > 0

@@ -190,7 +190,7 @@ TEST_CASE("Langford: closed forms of the cycle, its multipliers and its torus po
   CHECK(seen == 4);
 }
 
-TEST_CASE("whirling string: doublings and folds up to the period 5.5, and the doubled families", "[cycles]") {
+TEST_CASE("whirling string: doublings and folds up to the period 5.5, and the doubled families", "[cycles][slow]") {
   Diagram d(string_model(), "d", -12.0, 0.0, {.cycle = {.tolerance = 1e-11}, .period_doublings = 1, .longest_period = 5.5});
   REQUIRE(d.cycles->families().size() == 2);
   const auto single = d.points(0), doubled = d.points(1);
@@ -204,7 +204,7 @@ TEST_CASE("whirling string: doublings and folds up to the period 5.5, and the do
   CHECK(count(single, "unresolved") == 0);
 }
 
-TEST_CASE("Roessler: the cascade from a motion met by integration", "[cycles]") {
+TEST_CASE("Roessler: the cascade from a motion met by integration", "[cycles][slow]") {
   const EquilibriumModel model{.variables = {"x", "y", "z"},
                                .parameters = {{"c", 2.6}},
                                .rhs = {"-y - z", "x + 0.2*y", "0.2 + z*(x - c)"},
@@ -230,7 +230,7 @@ TEST_CASE("Roessler: the cascade from a motion met by integration", "[cycles]") 
   require_point(doubled, "PD", 3.83735816841, 11.5726888045);
 }
 
-TEST_CASE("folds of cycles of the enzyme model, both ends at Hopf points", "[cycles]") {
+TEST_CASE("folds of cycles of the enzyme model, both ends at Hopf points", "[cycles][slow]") {
   const EquilibriumModel model{.variables = {"s", "a"},
                                .parameters = {{"rh", 1.0}},
                                .rhs = {"110 - s - rh*s*a/(1 + s + 0.1*s^2)", "0.2*(500 - a) - rh*s*a/(1 + s + 0.1*s^2)"},
