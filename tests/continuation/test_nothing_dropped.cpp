@@ -210,13 +210,13 @@ TEST_CASE("a point where several eigenvalues vanish is located on its own equati
   // shifted, so that no coordinate is zero there: p = 0.3, x = y = 1
   const EquilibriumFlow f =
       System{{"x", "y"}, {"(p-0.3)*(x-1) - (x-1)^3 - 0.5*(x-1)*(y-1)^2", "(p-0.3)*(y-1) - (y-1)^3 - 0.5*(y-1)*(x-1)^2"}, {{"p", 0.0}}}.flow({"p"});
-  const auto at = multiple_point_near(f, Eigen::Vector3d(1.0, 1.0, 0.3000003));
+  const auto at = multiple_point_near(f, Eigen::Vector3d(1.0, 1.0, 0.30000003));
   REQUIRE(at);
   CHECK(at->dimension == 2);
   CHECK((at->u - Eigen::Vector3d(1.0, 1.0, 0.3)).norm() < 1e-13);
   // with quadratic terms the equations fix x, too
   const EquilibriumFlow g = System{{"x", "y"}, {"(p-0.3)*x - x^2 + x*y", "(p-0.3)*y - y^2 + x*y"}, {{"p", 0.0}}}.flow({"p"});
-  const auto there = multiple_point_near(g, Eigen::Vector3d(1e-6, -2e-6, 0.3000003));
+  const auto there = multiple_point_near(g, Eigen::Vector3d(1e-6, -2e-6, 0.30000003));
   REQUIRE(there);
   CHECK((there->u - Eigen::Vector3d(0.0, 0.0, 0.3)).norm() < 1e-12);
   // two zeros next to each other are not one
