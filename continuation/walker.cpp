@@ -93,6 +93,7 @@ struct Walker::State {
   double factor = 1.0;        // by which the next step may change
   double max_turn;            // between successive tangents of unit length
   int accepted = 0;
+  int upright_points = 0;
   int unstable = 0;     // directions, of `next`
   int refinements = 0;  // of the step at hand, for the sake of events
   double unit = 1.0;    // of x
@@ -115,14 +116,16 @@ struct Walker::State {
 
 // Does the state go on while the parameter stays? There r_x is singular all along, and what changes its sign is rounding: no event.
 bool Walker::State::stands_upright(const WalkOptions& options) {
-  constexpr double still = 1e-9;               // scaled slope of the parameter along the curve
-  constexpr double length = 0.05;              // over which it must stand still
+  constexpr double still = 1e-11;              // scaled slope of the parameter along the curve; x^4 leaves it within 2e-4
+  constexpr double length = 1e-3;              // over which it must stand still,
+  constexpr int points = 8;                    // and at so many points in a row
   if (!options.explain_changes) return false;  // a curve of special points may well keep to one value
   if (std::abs(now->tangent[now->tangent.size() - 1]) > still * curve.p_scale()) {
     upright_from = arclength;
+    upright_points = 0;
     return false;
   }
-  if (arclength - upright_from < length) return false;
+  if (++upright_points < points || arclength - upright_from < length) return false;
   std::erase_if(branch.special, [this](const SpecialPoint& e) { return e.arclength > upright_from; });
   return true;
 }
