@@ -236,14 +236,13 @@ bool AttractorFinder::not_periodic(Settled& s, Vector& y) {
   a.residual = (r.points.col(n - 1) - r.points.col(n - 2)).norm();
   if (lasting && r.exponent > r.error && r.exponent > 2.0 * resolution) {
     a.kind = MotionKind::chaotic;
+  } else if (auto decay = slow_decay(*this, r.points.rightCols(half), 1, {.periods = double(half), .visible = visible})) {
+    s.why = decay->words(fine_.period());
+    s.ahead = std::move(decay->motion);
+    return false;
   } else if (lasting && std::abs(r.exponent) < std::max(resolution, r.error)) {
     double f = torus_frequency(r.points);
     if (f == 0.0) return false;
-    if (auto decay = slow_decay(*this, r.points.rightCols(half), 1, {.periods = double(half), .visible = visible})) {
-      s.why = decay->words(fine_.period());
-      s.ahead = std::move(decay->motion);
-      return false;
-    }
     f -= std::floor(f);
     a.second_frequency = std::min(f, 1.0 - f);
     a.kind = MotionKind::quasi_periodic;

@@ -204,7 +204,10 @@ SteadyMotion settle(const ModalSystem<double>& system, const Vector& y0, const S
     motion.kind = MotionKind::unsettled;
     const bool interrupted = o.interrupted && *o.interrupted;
     if (interrupted) motion.why = "interrupted";
-    else if (!still_changing(lasting, period, motion) && o.lyapunov_periods > 0) {
+    else if (still_changing(lasting, period, motion)) {
+      // A beat slower than the windows looks like growth or decay, too: the multipliers know.
+      (void)decays_unseen(system, in_order(late, motion.periods_integrated), lasting, motion);
+    } else if (o.lyapunov_periods > 0) {
       motion.lyapunov = largest_exponent(system, motion.state, o);
       // A tangent vector along a torus neither grows nor shrinks; over N periods the estimate is good to about ln(N)/N.
       const double resolution = std::log(static_cast<double>(o.lyapunov_periods)) / (o.lyapunov_periods * period);
