@@ -610,7 +610,7 @@ void Walker::accept() {
   keep_scale();
   if (s.stop == StopReason::none && s.is_unbounded()) s.stop = StopReason::unbounded;
   if (s.stop == StopReason::none && creeps_to_bound()) s.stop = StopReason::parameter_bound;
-  if (s.stop == StopReason::none && s.stands_upright(options_)) s.stop = StopReason::min_step;  // no step leads off this parameter value
+  if (s.stop == StopReason::none && s.stands_upright(options_)) s.stop = StopReason::unbounded;  // no step leads off this parameter value
   if (s.stop == StopReason::none && s.branch.points() == s.branch.capacity()) s.stop = StopReason::max_points;
   if (s.stop == StopReason::none && s.observer && *s.observer && !(*s.observer)(s.branch, s.branch.points() - 1)) s.stop = StopReason::observer;
 }

@@ -82,7 +82,8 @@ void warn_if_upright(const EquilibriumModel& model, const std::string& parameter
   const int n = model.size(), last = b.points() - 1;
   for (const auto& [reason, end, before] : {std::tuple{b.start_reason, 0, 2}, std::tuple{b.stop_reason, last, last - 2}}) {
     const Vector step = b.u(end) - b.u(before);
-    if (reason != StopReason::min_step || std::abs(step[n]) > limits.standing * step.norm()) continue;
+    const bool stands = reason == StopReason::min_step || reason == StopReason::unbounded;
+    if (!stands || std::abs(step[n]) > limits.standing * step.norm()) continue;
     context.warn(fmt::format("branch {}: rest points at {} = {:.10g} are not isolated: they go on along {}", b.name, parameter, b.parameter(end),
                              direction_text(step.head(n), model.variables)));
     return;
