@@ -162,7 +162,8 @@ bool EventFinder::locate_multiple(const Sample& a, const Sample& b, int depth) {
     const Vector offset = (delta / span) * chord;
     if (!curve_.sample(point->u - offset, chord, left) || !curve_.sample(point->u + offset, chord, right)) continue;
     const int changed = std::abs(right.signature.total_unstable() - left.signature.total_unstable());
-    if (changed < 2 || changed > point->dimension) continue;
+    const bool turns = left.signature.forward != right.signature.forward;  // a branch that only touches the point keeps its stability
+    if ((changed < 2 && !turns) || changed > point->dimension) continue;
     SpecialPoint p;
     p.type = EventType::branch_point;
     p.subtype = "multiple";

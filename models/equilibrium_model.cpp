@@ -91,7 +91,7 @@ void check_conserved(const EquilibriumModel& m, const std::vector<std::string>& 
 // Text in all names, then everything that is neither variable nor lens fixed at its number.
 VectorField bound(const EquilibriumModel& m, const std::vector<std::string>& expressions, const std::vector<std::string>& lenses) {
   m.validate();
-  if (lenses.size() > 2) throw std::invalid_argument("at most two free parameters");
+  if (lenses.size() > 3) throw std::invalid_argument("at most three free parameters");
   const int n = m.size();
   std::vector<VectorField::Source> sources;
   for (int i = 0; i < n; ++i) sources.emplace_back(i);

@@ -216,7 +216,7 @@ TEST_CASE("a point where several eigenvalues vanish is located on its own equati
   CHECK((at->u - Eigen::Vector3d(1.0, 1.0, 0.3)).norm() < 1e-13);
   // with quadratic terms the equations fix x, too
   const EquilibriumFlow g = System{{"x", "y"}, {"(p-0.3)*x - x^2 + x*y", "(p-0.3)*y - y^2 + x*y"}, {{"p", 0.0}}}.flow({"p"});
-  const auto there = multiple_point_near(g, Eigen::Vector3d(1e-6, -2e-6, 0.30000003));
+  const auto there = multiple_point_near(g, Eigen::Vector3d(1e-7, -2e-7, 0.30000003));
   REQUIRE(there);
   CHECK((there->u - Eigen::Vector3d(0.0, 0.0, 0.3)).norm() < 1e-12);
   // two zeros next to each other are not one

@@ -65,10 +65,11 @@ TEST_CASE("Hopf points of well-known systems and their first Lyapunov coefficien
     CAPTURE(c.lens);
     CHECK(sound(all));
     const auto hopf = text_model::of_type(all, EventType::hopf);
-    REQUIRE(hopf.size() == c.at.size());
+    const std::size_t images = c.lens == "alpha" ? 2 : 1;  // Chua's circuit is odd: its two equilibria are images of each other
+    REQUIRE(hopf.size() == images * c.at.size());
     for (std::size_t i = 0; i < hopf.size(); ++i) {
-      CHECK(std::abs(hopf[i].u[hopf[i].u.size() - 1] - c.at[i]) < 1e-10);
-      CHECK(hopf[i].coefficient == Approx(c.l1[i]).epsilon(1e-9));
+      CHECK(std::abs(hopf[i].u[hopf[i].u.size() - 1] - c.at[i % c.at.size()]) < 1e-10);
+      CHECK(hopf[i].coefficient == Approx(c.l1[i % c.at.size()]).epsilon(1e-9));
     }
   }
 }
@@ -83,9 +84,11 @@ TEST_CASE("generalised Hopf points of FitzHugh-Nagumo and Chua", "[published]") 
   }
   const double rest = std::sqrt(8.0 / 3.0);
   const auto circuit = of_type(chart(chua, {"alpha", "beta"}, ranges(0.1, 15.0, 1.0, 30.0), {rest, 0.0, -rest, 1.0}), "GH");
-  REQUIRE(circuit.size() == 1);
-  CHECK(std::abs(circuit[0].u[3] - 1.72886069174) < 1e-9);
-  CHECK(std::abs(circuit[0].u[4] - 1.81678697037) < 1e-9);
+  REQUIRE(circuit.size() == 2);  // at either of two equilibria that are images of each other
+  for (const auto& z : circuit) {
+    CHECK(std::abs(z.u[3] - 1.72886069174) < 1e-9);
+    CHECK(std::abs(z.u[4] - 1.81678697037) < 1e-9);
+  }
 }
 
 TEST_CASE("the extended Lorenz-84 model has every codimension-2 point of rest", "[published][slow]") {

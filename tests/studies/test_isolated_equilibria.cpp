@@ -43,7 +43,7 @@ Result run(const Folder& f, const std::string& text, const std::string& paramete
 
 TEST_CASE("a conserved total is found, held and named", "[isolated]") {
   const Folder f;
-  for (const std::string& key : {"", "conserved = [\"S + I + R\"]\n", "conserved = [\"(S + I + R)^2\"]\n"}) {
+  for (const std::string key : {"", "conserved = [\"S + I + R\"]\n", "conserved = [\"(S + I + R)^2\"]\n"}) {
     const Result r = run(f, study(sirs + key, "b", "[0.2, 2.0]"), "b");
     INFO(r.ran.err);
     CHECK(r.ran.status == 0);
