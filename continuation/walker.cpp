@@ -279,6 +279,7 @@ void Walker::State::leave_branch_point(const WalkOptions& o) {
   bool alike = false;
   for (double distance = first; distance > leaving.nearest && !alike; distance *= leaving.shrink) {
     if (!beside_branch_point(distance, o, far) || !beside_branch_point(0.5 * distance, o, near) || !(far.signature == near.signature)) continue;
+    if (neutral_multiplier(curve, near) || neutral_multiplier(curve, far)) continue;
     alike = goes_on_alike(slope, distance, near, far);
     if (best > 0.0 && !alike) continue;
     best = distance;
