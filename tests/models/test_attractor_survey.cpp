@@ -60,7 +60,7 @@ TEST_CASE("a survey counts mirror images as one, and starts at rest leave the sy
   CHECK(r.attractors[0].starts == 6);
 }
 
-TEST_CASE("decay and units of a system; boxes that do not fit are refused") {
+TEST_CASE("decay and units of a system, and boxes that do not fit are refused") {
   ModalSystem<double> s = duffing(1.0, 1.0);
   CHECK(slowest_decay(s) == Approx(20.0 * 1.5 / 6.283185307179586));
   const auto u = in_units_of(s, 2.0);

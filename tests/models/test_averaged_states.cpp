@@ -56,7 +56,7 @@ TEST_CASE("averaged parametric oscillator: rest and two pairs beside the tongue,
   }
 }
 
-TEST_CASE("two parametric oscillators: nothing between them, the states are all pairs; coupled, as many") {
+TEST_CASE("two parametric oscillators: nothing between them, the states are all pairs, coupled ones as many") {
   ModalSystem<double> s;
   s.omega = 1.015;
   s.damping = {0.007, 0.007};

@@ -129,7 +129,7 @@ TEST_CASE("periodic: a strongly forced oscillator's isola of period two, and its
   for (std::size_t i = 0; i < kinds.size(); ++i) CHECK((branches[i].empty() == (multiple[i] != 1 && multiple[i] != 2)));
 }
 
-TEST_CASE("periodic: the closing line, in the JSON too; none without starts or damping") {
+TEST_CASE("periodic: the closing line, in the JSON too, and none without starts or damping") {
   const std::string study = forced_duffing(0.05, 0.1, 0.18, "[0.8, 1.5]");
   const Case all(study, "--json");
   REQUIRE(all.ran.status == 0);

@@ -256,7 +256,7 @@ TEST_CASE("an older result stays until the run has a table", "[result_file]") {
   CHECK_FALSE(fs::exists(path.string() + ".unfinished"));
 }
 
-TEST_CASE("a symbolic link stays, its target is replaced; what a killed run left is taken over", "[result_file]") {
+TEST_CASE("a symbolic link stays, its target is replaced, and what a killed run left is taken over", "[result_file]") {
   const Folder folder;
   fs::create_directory(folder / "elsewhere");
   fs::create_symlink("elsewhere/r.h5", folder / "link.h5");
