@@ -22,7 +22,8 @@ class Meeting {
   Meeting(const Problem& f, const CodimensionTwo& point, const TwoParameterOptions& options)
       : f_(f), n_(f.size()), options_(options), u_(point.u), blocks_(make_blocks(f, active_reflections(f, point.u.head(f.size())))), j_(n_, n_ + 2) {
     f.jacobian(u_, j_);
-    for (const auto& block : blocks_.indices) eigenvalues_.push_back(Eigen::EigenSolver<Matrix>(Matrix(j_(block, block)), false).eigenvalues());
+    for (const auto& block : blocks_.indices)  // a block is empty where every coordinate is odd
+      eigenvalues_.push_back(block.empty() ? Eigen::VectorXcd() : Eigen::EigenSolver<Matrix>(Matrix(j_(block, block)), false).eigenvalues());
     size_ = j_.leftCols(n_).norm();  // not of the eigenvalues: all of them may be zero
   }
 

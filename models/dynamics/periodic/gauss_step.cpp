@@ -69,6 +69,21 @@ void GaussStep::factorise() {
 bool GaussStep::solve(In x, In p, double h, Matrix& k) {
   h_ = h;
   k_ = k;
+  if (!iterate(x, p)) {
+    u_.head(n_) = x;
+    u_.tail(parameters_) = p;
+    flow_.residual(u_, f_);
+    k_ = f_.replicate(1, stages);
+    k = k_;
+    if (!iterate(x, p)) return false;
+  }
+  k = k_;
+  end_ = x;
+  for (int i = 0; i < stages; ++i) end_.noalias() += (h_ * b[i]) * k_.col(i);
+  return true;
+}
+
+bool GaussStep::iterate(In x, In p) {
   u_.tail(parameters_) = p;
   bool last = false;
   for (int iteration = 0; iteration < max_iterations; ++iteration) {
@@ -90,9 +105,6 @@ bool GaussStep::solve(In x, In p, double h, Matrix& k) {
     last = change <= std::sqrt(stage_tolerance) * size + rounding;  // the next change would be below the tolerance: only the Jacobians are renewed
     if (!last && iteration + 1 == max_iterations) return false;
   }
-  k = k_;
-  end_ = x;
-  for (int i = 0; i < stages; ++i) end_.noalias() += (h_ * b[i]) * k_.col(i);
   return true;
 }
 

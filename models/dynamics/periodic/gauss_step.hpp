@@ -23,7 +23,8 @@ class GaussStep {
   /// `flow` is kept by reference. `columns` includes its parameters, which come last.
   GaussStep(const Problem& flow, int columns);
 
-  /// Solves the stages from x over h; `k` (n x stages) holds a guess and then the slopes K. False if Newton does not converge.
+  /// Solves the stages from x over h; `k` (n x stages) holds a guess and then the slopes K. Where Newton does not converge from the guess it starts
+  /// from the slope at x; false, and `k` that, if it does not converge from there either.
   [[nodiscard]] bool solve(In x, In p, double h, Matrix& k);
   /// After `solve`: dx -> dx+. `dh`: slope of h along each column.
   void first(Matrix& dx, In dh);
@@ -38,6 +39,7 @@ class GaussStep {
   const Vector& stage_along(int i) const { return dy_v_[static_cast<std::size_t>(i)]; }  ///< after `second`
 
  private:
+  bool iterate(In x, In p);
   void factorise();
   void stage_points(In x);
 
