@@ -33,7 +33,9 @@ constexpr DepartureLimits leaving;
 
 // Size of x where x itself, at rest, does not tell it.
 double unit_at(const Problem& f, In u0, const WalkOptions& o) {
-  if (f.is_flow() || dynamic_cast<const OrbitProblem*>(&f)) return natural_size(f, u0, o.lower, o.upper);
+  const auto* orbit = dynamic_cast<const OrbitProblem*>(&f);
+  const bool has_period = orbit && orbit->group_of_unknown(u0, 0) < 0;  // of a limit cycle: its unknowns are never all at rest
+  if (f.is_flow() || (orbit && !has_period)) return natural_size(f, u0, o.lower, o.upper);
   return 1.0;  // the unknowns of a defining system are never all at rest
 }
 }  // namespace

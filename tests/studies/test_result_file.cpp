@@ -405,8 +405,8 @@ TEST_CASE("export writes one CSV file per table", "[export]") {
   const Folder folder;
   write_example(folder / "r.h5");
   const auto files = export_csv(folder / "r.h5");
-  REQUIRE(files == std::vector<fs::path>{folder / "r-csv/branches-IP1.csv", folder / "r-csv/branches-OP1.csv", folder / "r-csv/study-configuration.txt",
-                                         folder / "r-csv/cable.csv", folder / "r-csv/attributes.csv"});
+  REQUIRE(files == std::vector<fs::path>{folder / "r-csv/branches-IP1.csv", folder / "r-csv/branches-OP1.csv",
+                                         folder / "r-csv/study-configuration.txt", folder / "r-csv/cable.csv", folder / "r-csv/attributes.csv"});
   CHECK(contents(files[0]) ==
         "# omega [rad/s], amplitude [m], type\n"
         "omega,amplitude,type\n"

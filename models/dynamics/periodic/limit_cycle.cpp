@@ -22,6 +22,7 @@ constexpr double error_constant = 2e-8;
 constexpr int first_steps = 3;          // of a segment, before anything is known
 constexpr double shortest_scale = 2.0;  // a cycle moves by its size in at most its period over this
 constexpr double far = 0.05;            // of the cycle's size or in ln T: beyond it the mesh is laid anew
+constexpr double smallest_part = 1e-3;  // of the largest range: points that stand for a coordinate may not show how it moves
 constexpr double very_far = 0.3;        // beyond it twice, since the first was laid on a poor solution
 
 // int_0^theta L_j, the polynomial that the slopes of a step define: x(theta) = x + h sum_j weight_j K_j.
@@ -290,19 +291,20 @@ bool LimitCycle::follow(In u) const {
     return true;
   }
   const int n = flow_.size();
+  // In the size of either cycle: the mesh may be that of a far larger one.
+  Matrix x;
+  to_points(u, x);
+  const Vector range = x.rowwise().maxCoeff() - x.rowwise().minCoeff(), own = range.cwiseMax(smallest_part * range.maxCoeff());
   double distance = std::abs(u[log_period] - mesh_->reference[log_period]);
   for (int i = 0; i < n * segments_; ++i)
-    distance = std::max(distance, std::abs(u[scalars + i] - mesh_->reference[scalars + i]) / mesh_->size[i % n]);
+    distance = std::max(distance, std::abs(u[scalars + i] - mesh_->reference[scalars + i]) / std::min(mesh_->size[i % n], own[i % n]));
   if (distance <= far) return true;
-  const Vector before = mesh_->reference;
   mesh_->reference = u;
   for (int pass = 0; pass < (distance > very_far ? 2 : 1); ++pass) {
-    if (!evaluate(u, 0, u, nullptr, nullptr)) {
-      mesh_->reference = before;
-      return false;
+    if (!evaluate(u, 0, u, nullptr, nullptr)) {  // the mesh of a far-off evaluation: a fresh one
+      mesh_.reset();
+      return follow(u);
     }
-    Matrix x;
-    to_points(u, x);
     lay_mesh(u, x);
   }
   return true;
