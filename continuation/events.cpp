@@ -67,7 +67,9 @@ void EventFinder::multiplier_changes(const Signature& a, const Signature& b, std
 
 // A search among signs that rounding makes would never end: what is left of it is told as unresolved.
 bool EventFinder::between(const Sample& a, const Sample& b, double sigma, Sample& out) {
-  return ++samples_ <= options_.most_samples && curve_.between(a, b, sigma, out);
+  constexpr int most_of_orbit = 100;  // a point of a periodic motion, and what is tried there, costs a thousand times as much
+  const int most = curve_.orbit() ? std::min(most_of_orbit, options_.most_samples) : options_.most_samples;
+  return ++samples_ <= most && curve_.between(a, b, sigma, out);
 }
 
 void EventFinder::follow(const Sample& before, const Sample& a, Sample& b) {
