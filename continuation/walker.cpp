@@ -15,6 +15,7 @@ namespace whirl::continuation {
 namespace {
 constexpr double rounding = 1e-11;      // |x| below that times its unit is zero: what Newton leaves of a coordinate that is zero
 constexpr int most_neutral_points = 4;  // beside a branch point; more are neutral by nature, as without damping
+constexpr int most_unexplained = 20;    // steps of a branch: beyond them what changes is rounding, and no step is shortened for it
 constexpr double upright = 1e8;         // slope of x against p, in units, above which a start says nothing of the size of x
 constexpr double at_a_stand = 1e-3;     // slope of the parameter, in the metric, below which a state that grows does so without bound
 
@@ -98,6 +99,7 @@ struct Walker::State {
   int upright_points = 0;
   int unstable = 0;     // directions, of `next`
   int refinements = 0;  // of the step at hand, for the sake of events
+  int unexplained = 0;  // points of the branch at which a change stayed unresolved
   double unit = 1.0;    // of x
   bool scale_from_slope = false;
   bool departed = false;       // from a branch point, to a first point beside it
@@ -468,9 +470,11 @@ bool Walker::locate_events() {
   if (last || !(s.now->signature == s.next->signature) || !(s.before->signature == s.now->signature) ||
       s.finder.turns_at(*s.before, *s.now, *s.next) || s.finder.suspects(*s.before, *s.now, *s.next, last)) {
     auto& found = s.finder.find(*s.before, *s.now, *s.next, last);
-    if (s.finder.passed_over() && s.step > options_.least_step_on_suspicion * options_.max_step) return false;
+    const bool may_refine = s.unexplained < most_unexplained;
+    if (may_refine && s.finder.passed_over() && s.step > options_.least_step_on_suspicion * options_.max_step) return false;
     if (std::any_of(found.begin(), found.end(), [this](const auto& e) { return asks_for_shorter_step(e); })) return false;
     s.refinements = 0;
+    s.unexplained += std::any_of(found.begin(), found.end(), [](const auto& e) { return e.type == EventType::unresolved; }) ? 1 : 0;
     for (auto& e : found) {
       if (is_known(e)) continue;
       const Vector from_now = e.u - s.now->u;
@@ -486,7 +490,8 @@ bool Walker::locate_events() {
 // A change that nothing explains may be a jump to another curve; a fold out of range means that the curve was out of range for a while.
 bool Walker::asks_for_shorter_step(const SpecialPoint& e) {
   State& s = *s_;
-  if (e.type == EventType::unresolved) return options_.explain_changes && ++s.refinements <= 5 && s.step > 1e-4 * options_.max_step;
+  if (e.type == EventType::unresolved)
+    return options_.explain_changes && s.unexplained < most_unexplained && ++s.refinements <= 5 && s.step > 1e-4 * options_.max_step;
   const double margin = 1e-9 * (options_.upper - options_.lower), p = e.u[problem_.size()];
   return e.type == EventType::fold && (p > options_.upper + margin || p < options_.lower - margin) && s.step > 1e-5 * options_.max_step;
 }

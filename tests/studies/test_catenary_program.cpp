@@ -193,7 +193,7 @@ TEST_CASE("catenary-modes: a nonlinear model that other kinds take, the asymptot
   CHECK(example.find(model.substr(0, model.find("term"))) != std::string::npos);  // the example is this model
   std::ofstream(f.path / "p.toml") << "study = \"periodic\"\n"
                                    << model << "force = [{ equation = 3, amplitude = 0.2 }]\n[continuation]\nrange = [0.85, 1.3]\n";
-  const Ran p = program(f, "run p.toml --set periodic.period_doublings=0 --json -o p.h5");
+  const Ran p = program(f, "run p.toml --json -o p.h5");
   INFO(p.err);
   REQUIRE(p.status == 0);
   const auto at = numbers(p.out, "omega");  // the swing begins at half the frequency on either side of twice its own, 2 x 0.47468 rad/s
