@@ -12,7 +12,9 @@ constexpr double beside_by = 0.01;        // of 1 + |u|: no further, for what gr
 constexpr double rank = 1e-9;             // singular values of the equations' Jacobian below it, relative, leave a direction open
 constexpr double solved = 1e-9;           // of r and G, in parts of the usual size
 constexpr double settled = 1e-11;         // last step
-constexpr int most_steps = 15;
+constexpr int most_steps = 40;
+// Where the equations fix a coordinate by its square or cube Newton contracts by 1/2 or 2/3: the rest of such a series is added at once.
+constexpr double slowest = 0.8, fastest = 0.3, alike = 0.03;
 
 // The equations and their Jacobian at u; B and C are the borders.
 struct Equations {
@@ -72,13 +74,12 @@ std::optional<MultiplePoint> multiple_point_near(const Problem& f, In u) {
   f.jacobian(u, j);
   const Eigen::JacobiSVD<Matrix> svd(j.leftCols(n), Eigen::ComputeFullU | Eigen::ComputeFullV);
   const auto d = (svd.singularValues().array() <= nearly_singular * usual).count();
-  // On a fold r_p fills a dimension: of [r_x r_p] two must be missing.
-  const Eigen::VectorXd whole = Eigen::JacobiSVD<Matrix>(j).singularValues();
-  if (d < 2 || (whole.array() <= nearly_singular * usual).count() < 2) return std::nullopt;
+  if (d < 2) return std::nullopt;
   const Equations equations(f, svd.matrixU().rightCols(d), svd.matrixV().rightCols(d));
   MultiplePoint point{u, static_cast<int>(d), 0.0};
   Vector values;
   Matrix slopes;
+  double last_step = 0.0, last_ratio = 0.0;
   for (int i = 0; i < most_steps; ++i) {
     equations.evaluate(point.u, values, slopes);
     if (!values.allFinite() || !slopes.allFinite()) return std::nullopt;
@@ -86,10 +87,18 @@ std::optional<MultiplePoint> multiple_point_near(const Problem& f, In u) {
     least.setThreshold(rank);
     const Vector step = least.solve(-values);
     point.u += step;
+    const double ratio = step.norm() / last_step;
+    if (ratio > fastest && ratio < slowest && std::abs(ratio - last_ratio) < alike) point.u += ratio / (1.0 - ratio) * step;
+    last_ratio = ratio;
+    last_step = step.norm();
     if (!(step.norm() <= settled * (1.0 + point.u.norm()))) continue;
     equations.evaluate(point.u, values, slopes);
     point.residual = values.lpNorm<Eigen::Infinity>();
     if (!(point.residual < solved * usual)) return std::nullopt;
+    // On a fold r_p fills a dimension: of [r_x r_p] two must be missing.
+    f.jacobian(point.u, j);
+    const Eigen::VectorXd whole = Eigen::JacobiSVD<Matrix>(j).singularValues();
+    if ((whole.array() <= nearly_singular * usual).count() < 2) return std::nullopt;
     return point;
   }
   return std::nullopt;

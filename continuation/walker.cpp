@@ -282,9 +282,10 @@ void Walker::State::leave_branch_point(const WalkOptions& o) {
   double best = 0.0;
   bool alike = false;
   for (double distance = first; distance > leaving.nearest && !alike; distance *= leaving.shrink) {
-    if (!beside_branch_point(distance, o, far) || !beside_branch_point(0.5 * distance, o, near) || !(far.signature == near.signature)) continue;
+    if (!beside_branch_point(distance, o, far) || !beside_branch_point(0.5 * distance, o, near)) continue;
     if (neutral_multiplier(curve, near) || neutral_multiplier(curve, far)) continue;
-    alike = goes_on_alike(slope, distance, near, far);
+    // Where several eigenvalues vanish one may stay zero to higher order along the branch: its sign is rounding, and nearer it is only worse.
+    alike = far.signature == near.signature && goes_on_alike(slope, distance, near, far);
     if (best > 0.0 && !alike) continue;
     best = distance;
     best_far = far;

@@ -160,7 +160,7 @@ TEST_CASE("coupled cells: all states that leave a multiple zero, images included
     double c;
     std::size_t states;  // at a = 0.3, counted by Newton from 20000 starts without this program
   };
-  for (const auto& [n, c, count] : std::vector<Case>{{3, 1.0, 13}, {3, 4.0, 13}, {4, 1.0, 27}}) {
+  for (const auto& [n, c, count] : std::vector<Case>{{3, 1.0, 13}, {3, 0.5, 13}, {3, 4.0, 13}, {4, 1.0, 27}}) {
     const EquilibriumFlow f = cells(n, c).flow({"a"});
     Network net(f, {.walk = {.lower = -1.0, .upper = 0.5}});
     Vector start = Vector::Zero(n + 1);
