@@ -57,6 +57,13 @@ inline Ran program(const Folder& f, const std::string& arguments, const std::str
   return shell(f, before + WHIRL_PROGRAM + " " + arguments);
 }
 
+/// How many times longer the program takes under the sanitizers.
+#ifdef __SANITIZE_ADDRESS__
+inline constexpr int slower = 20;
+#else
+inline constexpr int slower = 1;
+#endif
+
 /// The program with Ctrl-C pressed `wait` after it has printed `text` (two minutes at most for that), as two signals at once,
 /// which is how `timeout` presses it.
 inline Ran interrupted_program(const Folder& f, const std::string& arguments, const std::string& text, std::chrono::milliseconds wait) {

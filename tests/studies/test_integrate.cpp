@@ -110,7 +110,7 @@ TEST_CASE("basins: shares, numbers, symmetry, accuracy, the same with one thread
 TEST_CASE("basins: Ctrl-C leaves a readable file with the starts decided so far") {
   const Folder f;
   const std::string many = "oresund-basins.toml --set basins.resolution=[900,900] -o o.h5";
-  const Ran r = interrupted_program(f, "run " + folder + many, "", std::chrono::seconds(3));
+  const Ran r = interrupted_program(f, "run " + folder + many, "", std::chrono::seconds(3 * slower));
   INFO(r.err);
   CHECK(r.status == 130);
   const ResultReader file(f.path / "o.h5");

@@ -169,7 +169,7 @@ TEST_CASE("mode-convergence: bad input and what is not there") {
   CHECK(ResultReader(out.path).column("/convergence", "peak").values.at(0) == Approx(1.04989367).epsilon(1e-6));
 }
 
-TEST_CASE("an example study for each resonance") {
+TEST_CASE("an example study for each resonance", "[slow]") {
   for (const char* file : {"resonance-primary.toml", "resonance-parametric.toml", "resonance-superharmonic.toml", "resonance-internal-1-1.toml",
                            "resonance-internal-1-2.toml"})
     CHECK(study_kind("periodic").check(read(file)).empty());
