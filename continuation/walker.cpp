@@ -39,6 +39,35 @@ double unit_at(const Problem& f, In u0, const WalkOptions& o) {
   if (f.is_flow() || (orbit && !has_period)) return natural_size(f, u0, o.lower, o.upper);
   return 1.0;  // the unknowns of a defining system are never all at rest
 }
+// Where the cubic between two samples, along which the parameter is monotone, has this value of it.
+Vector guess_at_value(const Curve& curve, const Sample& a, const Sample& b, int n, double value) {
+  Sample at;
+  double lo = 0.0, hi = 1.0;
+  const bool rises = b.u[n] > a.u[n];
+  for (int i = 0; i < 40; ++i) {
+    const double middle = 0.5 * (lo + hi);
+    curve.guess(a, b, middle, at);
+    ((at.u[n] < value) == rises ? lo : hi) = middle;
+  }
+  at.u[n] = value;
+  return at.u;
+}
+
+// Where the parameter turns within the step; false if it does not.
+bool find_turn(Curve& curve, const Sample& now, const Sample& next, int n, Sample& at) {
+  double f = now.tangent[n], g = next.tangent[n], lo = 0.0, hi = 1.0;
+  if (!(f * g < 0.0)) return false;
+  at = next;
+  for (int i = 0; i < 40 && hi - lo > 1e-9; ++i) {
+    const double sigma = i % 3 == 2 ? 0.5 * (lo + hi) : std::clamp(lo + (hi - lo) * f / (f - g), lo + 0.02 * (hi - lo), hi - 0.02 * (hi - lo));
+    if (!curve.between(now, next, sigma, at)) return false;
+    const double slope = at.tangent[n];
+    (slope * f > 0.0 ? lo : hi) = sigma;
+    (slope * f > 0.0 ? f : g) = slope;
+  }
+  return true;
+}
+
 }  // namespace
 
 void WalkOptions::validate() const {
@@ -527,27 +556,33 @@ void Walker::find_user_values() {
     p.unstable_before = p.unstable_after = at.signature.total_unstable();
     s.branch.special.push_back(std::move(p));
   };
-  // A fold within the step parts it in two, each of which may meet a value that the ends do not enclose.
-  std::vector<const Vector*> knots = {&s.now->u};
+  const auto within_step = [&](const SpecialPoint& e) {
+    return e.type == EventType::fold && e.arclength > s.arclength && e.arclength < s.arclength + s.step_taken;
+  };
+  const auto enclosed = [&](double value) { return (s.now->u[n] - value) * (s.next->u[n] - value) <= 0.0; };
+  if (!(s.now->tangent[n] * s.next->tangent[n] < 0.0) && std::none_of(s.branch.special.begin(), s.branch.special.end(), within_step) &&
+      std::none_of(options_.user_values.begin(), options_.user_values.end(), enclosed))
+    return;
+  // A turn of the parameter within the step parts it in two, each of which may meet a value that the ends do not enclose.
+  std::vector<Sample> knots = {*s.now};
   for (const auto& e : s.branch.special)
-    if (e.type == EventType::fold && e.arclength > s.arclength && e.arclength < s.arclength + s.step_taken) knots.push_back(&e.u);
-  knots.push_back(&s.next->u);
+    if (within_step(e)) {
+      knots.push_back({.u = e.u, .tangent = e.tangent, .signature = {}});
+      if (s.curve.dot(e.tangent, s.next->u - s.now->u) < 0.0) knots.back().tangent *= -1.0;
+    }
+  Sample turn, at;
+  if (knots.size() == 1 && find_turn(s.curve, *s.now, *s.next, n, turn)) knots.push_back(turn);  // its folds are not events of this walk
+  knots.push_back(*s.next);
   std::vector<Sample> met;
   for (const double value : options_.user_values)
     for (std::size_t k = 0; k + 1 < knots.size(); ++k) {
-      const Vector &a = *knots[k], &b = *knots[k + 1];
-      if ((a[n] - value) * (b[n] - value) > 0.0 || a[n] == value) continue;
-      // From a fold the parameter goes with the square of the distance.
-      const bool from_fold = k > 0, to_fold = k + 2 < knots.size();
-      const double linear = (value - a[n]) / (b[n] - a[n]);
-      const double part = from_fold && !to_fold ? std::sqrt(linear) : to_fold && !from_fold ? 1.0 - std::sqrt(1.0 - linear) : linear;
-      Vector guess = a + part * (b - a);
-      guess[n] = value;
-      const Vector normal = Vector::Unit(n + 1, n) * (b[n] > a[n] ? 1.0 : -1.0);
-      Sample at;
-      if (s.curve.sample(guess, normal, at)) met.push_back(std::move(at));
+      const Sample &a = knots[k], &b = knots[k + 1];
+      if ((a.u[n] - value) * (b.u[n] - value) > 0.0 || a.u[n] == value) continue;
+      Vector guess = guess_at_value(s.curve, a, b, n, value);
+      const Vector normal = Vector::Unit(n + 1, n) * (b.u[n] > a.u[n] ? 1.0 : -1.0);
+      if (s.curve.sample(guess, normal, at)) met.push_back(at);
     }
-  for (const Sample& at : met) add(EventType::user_value, "", at);
+  for (const Sample& value : met) add(EventType::user_value, "", value);
 }
 
 // An extremum of the observable within the step: its slope along the tangent changes sign.
