@@ -139,6 +139,12 @@ TEST_CASE("derivatives of the collocation system are those of its residual", "[c
     cycle->jacobian(u + 1e-5 * v, ahead);
     cycle->jacobian(u - 1e-5 * v, behind);
     CHECK(((ahead - behind) / 2e-5 - h).norm() < 1e-6 * h.norm());
+    const Vector a = Vector::LinSpaced(columns, 0.4, -0.9), b = Vector::LinSpaced(columns, 0.2, 1.0);
+    Vector third(n);
+    cycle->third(u, a, b, v, third);
+    cycle->second(u + 1e-5 * v, a, ahead);
+    cycle->second(u - 1e-5 * v, a, behind);
+    CHECK(((ahead - behind) * b / 2e-5 - third).norm() < 1e-6 * third.norm());
   }
 }
 

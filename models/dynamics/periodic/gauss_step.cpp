@@ -5,9 +5,14 @@
 namespace whirl::models {
 namespace {
 
-constexpr int max_iterations = 12;
-constexpr double stage_tolerance = 1e-13;  // of a stage slope, relative: the next correction is its square
-constexpr double rounding = 1e-15;
+constexpr int max_iterations = 24;
+constexpr double stage_tolerance = 1e-15;  // of a stage slope, relative: what the next correction would be at most
+constexpr double rounding = 1e-16;         // of the state
+constexpr double quadratic = 3e-8;         // a Newton correction below it, relative, is the last
+constexpr double rounding_of_field = 1e4;  // corrections that shrink no more are rounding up to so many times the tolerance
+constexpr double too_slow = 0.1;           // ratio of two corrections: above it the factors are made anew
+constexpr double far = 1e-3;               // a Newton correction above it, relative, is followed by another
+constexpr int most_factors = 14;
 
 }  // namespace
 
@@ -31,81 +36,114 @@ GaussStep::GaussStep(const Problem& flow, int columns)
       parameters_(flow.parameters()),
       columns_(columns),
       u_(n_ + parameters_),
+      key_(n_ + parameters_ + 1),
       end_(n_),
       rhs_(stages * n_),
       delta_(stages * n_),
       f_(n_),
-      k_(n_, stages),
       block_(stages * n_, stages * n_),
       second_(n_, n_ + parameters_),
       y_(stages, Vector(n_)),
       dy_v_(stages, Vector(n_)),
-      jacobian_(stages, Matrix(n_, n_ + parameters_)),
       dk_(stages, Matrix(n_, columns)),
       dy_(stages, Matrix(n_, columns)),
       ddy_(stages, Matrix(n_, columns)),
       ddk_(stages, Matrix(n_, columns)),
       right_(stages * n_, columns),
-      lu_(stages * n_),
       dh_(columns) {}
 
-void GaussStep::stage_points(In x) {
+void GaussStep::stage_points(In x, const Matrix& k) {
   for (int i = 0; i < stages; ++i) {
     Vector& y = y_[static_cast<std::size_t>(i)];
     y = x;
-    for (int j = 0; j < stages; ++j) y.noalias() += (h_ * a[i][j]) * k_.col(j);
+    for (int j = 0; j < stages; ++j) y.noalias() += (h_ * a[i][j]) * k.col(j);
   }
 }
 
-void GaussStep::factorise() {
+// Jacobians at the stage points and the factors that go with them; false where they are not finite.
+bool GaussStep::linearise(In p, GaussMemory& m) {
+  m.jacobian.resize(stages, Matrix(n_, n_ + parameters_));
+  u_.tail(parameters_) = p;
+  for (int i = 0; i < stages; ++i) {
+    u_.head(n_) = y_[static_cast<std::size_t>(i)];
+    flow_.jacobian(u_, m.jacobian[static_cast<std::size_t>(i)]);
+  }
   for (int i = 0; i < stages; ++i)
     for (int j = 0; j < stages; ++j) {
-      block_.block(i * n_, j * n_, n_, n_) = (-h_ * a[i][j]) * jacobian_[static_cast<std::size_t>(i)].leftCols(n_);
+      block_.block(i * n_, j * n_, n_, n_) = (-h_ * a[i][j]) * m.jacobian[static_cast<std::size_t>(i)].leftCols(n_);
       if (i == j) block_.block(i * n_, j * n_, n_, n_).diagonal().array() += 1.0;
     }
-  lu_.compute(block_);
-}
-
-bool GaussStep::solve(In x, In p, double h, Matrix& k) {
-  h_ = h;
-  k_ = k;
-  if (!iterate(x, p)) {
-    u_.head(n_) = x;
-    u_.tail(parameters_) = p;
-    flow_.residual(u_, f_);
-    k_ = f_.replicate(1, stages);
-    k = k_;
-    if (!iterate(x, p)) return false;
-  }
-  k = k_;
-  end_ = x;
-  for (int i = 0; i < stages; ++i) end_.noalias() += (h_ * b[i]) * k_.col(i);
+  m.at.resize(0);
+  if (!block_.allFinite()) return false;
+  m.lu.compute(block_);
   return true;
 }
 
-bool GaussStep::iterate(In x, In p) {
+bool GaussStep::solve(In x, In p, double h, GaussMemory& m, bool derivatives) {
+  memory_ = &m;
+  h_ = h;
+  key_ << x, p, h;
+  const bool known = m.at.size() == key_.size() && m.at == key_;
+  if (!known) {
+    if (!iterate(x, p, m) && !from_slope(x, p, m)) return false;
+  }
+  stage_points(x, m.k);
+  if (!known && derivatives) {
+    if (!linearise(p, m)) return false;
+    m.at = key_;
+  }
+  end_ = x;
+  for (int i = 0; i < stages; ++i) end_.noalias() += (h_ * b[i]) * m.k.col(i);
+  return true;
+}
+
+bool GaussStep::from_slope(In x, In p, GaussMemory& m) {
+  u_.head(n_) = x;
   u_.tail(parameters_) = p;
-  bool last = false;
+  flow_.residual(u_, f_);
+  m.k = f_.replicate(1, stages);
+  m.lu = Eigen::PartialPivLU<Matrix>();
+  if (f_.allFinite() && iterate(x, p, m)) return true;
+  m.k = f_.replicate(1, stages);
+  m.lu = Eigen::PartialPivLU<Matrix>();
+  return false;
+}
+
+bool GaussStep::iterate(In x, In p, GaussMemory& m) {
+  m.at.resize(0);
+  bool fresh = false;
+  int factors = 0;
+  double before = 0.0;
   for (int iteration = 0; iteration < max_iterations; ++iteration) {
-    stage_points(x);
+    stage_points(x, m.k);
+    const bool newton = m.lu.rows() == 0 || fresh;
+    if (newton) {
+      if (++factors > most_factors || !linearise(p, m)) return false;
+      fresh = false;
+      before = 0.0;
+    }
+    u_.tail(parameters_) = p;
     double size = 0.0;
     for (int i = 0; i < stages; ++i) {
       u_.head(n_) = y_[static_cast<std::size_t>(i)];
-      flow_.linearise(u_, f_, jacobian_[static_cast<std::size_t>(i)]);
-      rhs_.segment(i * n_, n_) = f_ - k_.col(i);
+      flow_.residual(u_, f_);
+      rhs_.segment(i * n_, n_) = f_ - m.k.col(i);
       size = std::max(size, f_.lpNorm<Eigen::Infinity>());
     }
     if (!rhs_.allFinite()) return false;
-    factorise();
-    if (last) break;
-    delta_ = lu_.solve(rhs_);
-    for (int i = 0; i < stages; ++i) k_.col(i) += delta_.segment(i * n_, n_);
+    delta_ = m.lu.solve(rhs_);
     const double change = delta_.lpNorm<Eigen::Infinity>();
     if (!std::isfinite(change)) return false;
-    last = change <= std::sqrt(stage_tolerance) * size + rounding;  // the next change would be below the tolerance: only the Jacobians are renewed
-    if (!last && iteration + 1 == max_iterations) return false;
+    for (int i = 0; i < stages; ++i) m.k.col(i) += delta_.segment(i * n_, n_);
+    const double ratio = before > 0.0 ? change / before : 1.0;
+    const double small = stage_tolerance * size + rounding * x.lpNorm<Eigen::Infinity>() / std::abs(h_);
+    if (change <= small || (ratio < 1.0 && change * ratio / (1.0 - ratio) <= small)) return true;
+    if (newton && change <= quadratic * size) return true;  // the next would be its square
+    if (change <= rounding_of_field * small && ratio > too_slow) return true;
+    fresh = (newton && change > far * size) || (ratio > too_slow && before > 0.0);
+    before = change;
   }
-  return true;
+  return false;
 }
 
 void GaussStep::first(Matrix& dx, In dh) {
@@ -113,21 +151,21 @@ void GaussStep::first(Matrix& dx, In dh) {
   for (int i = 0; i < stages; ++i) {
     Vector& lever = f_;  // sum_j a_ij K_j
     lever.setZero();
-    for (int j = 0; j < stages; ++j) lever.noalias() += a[i][j] * k_.col(j);
+    for (int j = 0; j < stages; ++j) lever.noalias() += a[i][j] * memory_->k.col(j);
     Matrix& dy = dy_[static_cast<std::size_t>(i)];
     dy = dx;
     dy.noalias() += lever * dh_.transpose();
-    const Matrix& jacobian = jacobian_[static_cast<std::size_t>(i)];
+    const Matrix& jacobian = memory_->jacobian[static_cast<std::size_t>(i)];
     right_.middleRows(i * n_, n_).noalias() = jacobian.leftCols(n_) * dy;
     right_.block(i * n_, columns_ - parameters_, n_, parameters_) += jacobian.rightCols(parameters_);
   }
-  right_ = lu_.solve(right_);
+  right_ = memory_->lu.solve(right_);
   for (int i = 0; i < stages; ++i) dk_[static_cast<std::size_t>(i)] = right_.middleRows(i * n_, n_);
   for (int i = 0; i < stages; ++i)
     for (int j = 0; j < stages; ++j) dy_[static_cast<std::size_t>(i)].noalias() += (h_ * a[i][j]) * dk_[static_cast<std::size_t>(j)];
   for (int j = 0; j < stages; ++j) {
     dx.noalias() += (h_ * b[j]) * dk_[static_cast<std::size_t>(j)];
-    dx.noalias() += (b[j] * k_.col(j)) * dh_.transpose();
+    dx.noalias() += (b[j] * memory_->k.col(j)) * dh_.transpose();
   }
 }
 
@@ -138,12 +176,12 @@ void GaussStep::second(Vector& dx_v, double dh_v, In dp_v, Matrix& ddx, In ddh) 
   Vector right = Vector::Zero(stages * n_);
   for (int i = 0; i < stages; ++i) {
     Vector start = dx_v;
-    for (int j = 0; j < stages; ++j) start += (a[i][j] * dh_v) * k_.col(j);
-    const Matrix& jacobian = jacobian_[static_cast<std::size_t>(i)];
+    for (int j = 0; j < stages; ++j) start += (a[i][j] * dh_v) * memory_->k.col(j);
+    const Matrix& jacobian = memory_->jacobian[static_cast<std::size_t>(i)];
     right.segment(i * n_, n_) = jacobian.leftCols(n_) * start + jacobian.rightCols(parameters_) * dp_v;
     dy_v_[static_cast<std::size_t>(i)] = start;
   }
-  right = lu_.solve(right);
+  right = memory_->lu.solve(right);
   for (int i = 0; i < stages; ++i) dk_v.col(i) = right.segment(i * n_, n_);
   for (int i = 0; i < stages; ++i)
     for (int j = 0; j < stages; ++j) dy_v_[static_cast<std::size_t>(i)] += (h_ * a[i][j]) * dk_v.col(j);
@@ -156,22 +194,22 @@ void GaussStep::second(Vector& dx_v, double dh_v, In dp_v, Matrix& ddx, In ddh) 
     for (int j = 0; j < stages; ++j) {
       ddy += (a[i][j] * dh_v) * dk_[static_cast<std::size_t>(j)];
       ddy += (a[i][j] * dk_v.col(j)) * dh_.transpose();
-      ddy += (a[i][j] * k_.col(j)) * ddh.transpose();
+      ddy += (a[i][j] * memory_->k.col(j)) * ddh.transpose();
     }
     u_.head(n_) = y_[at];
     along.head(n_) = dy_v_[at];
     flow_.second(u_, along, second_);
-    right_.middleRows(i * n_, n_) = second_.leftCols(n_) * dy_[at] + jacobian_[at].leftCols(n_) * ddy;
+    right_.middleRows(i * n_, n_) = second_.leftCols(n_) * dy_[at] + memory_->jacobian[at].leftCols(n_) * ddy;
     right_.block(i * n_, columns_ - parameters_, n_, parameters_) += second_.rightCols(parameters_);
   }
-  right_ = lu_.solve(right_);
+  right_ = memory_->lu.solve(right_);
   for (int i = 0; i < stages; ++i) ddk_[static_cast<std::size_t>(i)] = right_.middleRows(i * n_, n_);
   for (int i = 0; i < stages; ++i)
     for (int j = 0; j < stages; ++j) ddy_[static_cast<std::size_t>(i)] += (h_ * a[i][j]) * ddk_[static_cast<std::size_t>(j)];
   for (int j = 0; j < stages; ++j) {
     const auto at = static_cast<std::size_t>(j);
-    ddx += (h_ * b[j]) * ddk_[at] + (b[j] * dh_v) * dk_[at] + (b[j] * dk_v.col(j)) * dh_.transpose() + (b[j] * k_.col(j)) * ddh.transpose();
-    dx_v += (h_ * b[j]) * dk_v.col(j) + (b[j] * dh_v) * k_.col(j);
+    ddx += (h_ * b[j]) * ddk_[at] + (b[j] * dh_v) * dk_[at] + (b[j] * dk_v.col(j)) * dh_.transpose() + (b[j] * memory_->k.col(j)) * ddh.transpose();
+    dx_v += (h_ * b[j]) * dk_v.col(j) + (b[j] * dh_v) * memory_->k.col(j);
   }
 }
 

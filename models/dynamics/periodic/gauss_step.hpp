@@ -10,10 +10,20 @@
 ///
 /// Slopes run over `columns` independent variables: dx is n x columns, dh a row, the last k columns are the parameters.
 
-#include "core/dense_lu.hpp"
+#include <Eigen/LU>
+#include <vector>
+
 #include "core/problem.hpp"
 
 namespace whirl::models {
+
+/// What one step keeps from one evaluation to the next.
+struct GaussMemory {
+  Matrix k;                           ///< slopes of the stages, n x 4: a guess, and then the solution
+  Eigen::PartialPivLU<Matrix> lu;     ///< of the matrix above, at the solution or near it; size 0: not yet
+  std::vector<Matrix> jacobian = {};  ///< [f_x f_p] at the stages of the step `at`
+  Vector at = {};                     ///< (x, p, h) that `jacobian` and `lu` are exact for, or of size 0
+};
 
 class GaussStep {
  public:
@@ -23,35 +33,40 @@ class GaussStep {
   /// `flow` is kept by reference. `columns` includes its parameters, which come last.
   GaussStep(const Problem& flow, int columns);
 
-  /// Solves the stages from x over h; `k` (n x stages) holds a guess and then the slopes K. Where Newton does not converge from the guess it starts
-  /// from the slope at x; false, and `k` that, if it does not converge from there either.
-  [[nodiscard]] bool solve(In x, In p, double h, Matrix& k);
-  /// After `solve`: dx -> dx+. `dh`: slope of h along each column.
+  /// Solves the stages from x over h, by chords with the factors kept as long as these converge fast, by Newton where they do not, and from the slope
+  /// at x where the guess in `memory` leads nowhere; false if nothing does. `derivatives`: the Jacobians are renewed at the solution, and `first` and
+  /// `second` may follow. `memory` must live until then.
+  [[nodiscard]] bool solve(In x, In p, double h, GaussMemory& memory, bool derivatives);
+  /// After `solve` with derivatives: dx -> dx+. `dh`: slope of h along each column.
   void first(Matrix& dx, In dh);
   /// After `first`, along v: dx_v, dh_v, dp_v are the slopes along v before this step, `ddx` (n x columns) the second derivative D2x[v, .] and
   /// becomes that behind the step, dx_v the slope behind it. `ddh`: D2h[v, .].
   void second(Vector& dx_v, double dh_v, In dp_v, Matrix& ddx, In ddh);
 
-  const Vector& end() const { return end_; }                                             ///< x+
-  const Vector& stage(int i) const { return y_[static_cast<std::size_t>(i)]; }           ///< Y_i
-  const Matrix& stage_slope(int i) const { return dy_[static_cast<std::size_t>(i)]; }    ///< after `first`
-  const Matrix& stage_second(int i) const { return ddy_[static_cast<std::size_t>(i)]; }  ///< after `second`
-  const Vector& stage_along(int i) const { return dy_v_[static_cast<std::size_t>(i)]; }  ///< after `second`
+  const Vector& end() const { return end_; }                                                      ///< x+
+  const Matrix& slopes() const { return memory_->k; }                                             ///< K
+  const Matrix& jacobian(int i) const { return memory_->jacobian[static_cast<std::size_t>(i)]; }  ///< [f_x f_p] at Y_i
+  const Eigen::PartialPivLU<Matrix>& factors() const { return memory_->lu; }                      ///< of the matrix above
+  const Vector& stage(int i) const { return y_[static_cast<std::size_t>(i)]; }                    ///< Y_i
+  const Matrix& stage_slope(int i) const { return dy_[static_cast<std::size_t>(i)]; }             ///< after `first`
+  const Matrix& stage_second(int i) const { return ddy_[static_cast<std::size_t>(i)]; }           ///< after `second`
+  const Vector& stage_along(int i) const { return dy_v_[static_cast<std::size_t>(i)]; }           ///< after `second`
 
  private:
-  bool iterate(In x, In p);
-  void factorise();
-  void stage_points(In x);
+  bool iterate(In x, In p, GaussMemory& memory);
+  bool from_slope(In x, In p, GaussMemory& memory);
+  bool linearise(In p, GaussMemory& memory);
+  void stage_points(In x, const Matrix& k);
 
   const Problem& flow_;
   int n_, parameters_, columns_;
   double h_ = 0.0;
-  Vector u_, end_, rhs_, delta_, f_;
-  Matrix k_, block_, second_;
+  Vector u_, key_, end_, rhs_, delta_, f_;
+  GaussMemory* memory_ = nullptr;
+  Matrix block_, second_;
   std::vector<Vector> y_, dy_v_;
-  std::vector<Matrix> jacobian_, dk_, dy_, ddy_, ddk_;  // a stage each
-  Matrix right_;                                        // stages * n x columns
-  Eigen::PartialPivLU<Matrix> lu_;
+  std::vector<Matrix> dk_, dy_, ddy_, ddk_;  // a stage each
+  Matrix right_;                             // stages * n x columns
   Vector dh_;
 };
 

@@ -61,6 +61,7 @@ class LimitCycle : public OrbitProblem {
   int steps() const;  ///< intervals of the mesh in use
   int level() const { return level_; }
   int dimension() const { return flow_.size(); }
+  const Vector& phase() const { return phase_; }
 
  private:
   LimitCycle(const LimitCycle& single);
@@ -70,6 +71,7 @@ class LimitCycle : public OrbitProblem {
   void do_jacobian(In u, MatrixOut j) const override;
   void do_linearise(In u, Out r, MatrixOut j) const override;
   void do_second(In u, In v, MatrixOut h) const override;
+  void do_third(In u, In a, In b, In c, Out t) const override;
   bool do_multipliers(In u, Eigen::VectorXcd& mu, Eigen::VectorXi& group) const override;
   int do_group_of_unknown(In, int i) const override { return i < scalars ? -1 : 0; }
   void do_velocity(In u, int slope, MatrixOut c) const override;
@@ -86,6 +88,8 @@ class LimitCycle : public OrbitProblem {
   void from_points(const Matrix& x, Out u) const;  // and back
   void rows_and_columns(MatrixOut j) const;        // of the points -> of the unknowns, in place
   bool evaluate(In u, int order, In v, Out* r, MatrixOut* j) const;
+  bool sweep_segments(In u, int order, In v) const;
+  void assemble(int order, MatrixOut j) const;
   bool follow(In u) const;  // the mesh suits u
   void lay_mesh(In u, const Matrix& x) const;
 
