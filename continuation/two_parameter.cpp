@@ -44,7 +44,8 @@ WalkOptions Follower::walk_options() const {
   walk.locate_events = true;
   walk.explain_changes = false;
   walk.peaks.clear();
-  walk.bounds = {{static_cast<int>(curve_.states()), options_.range1[0], options_.range1[1]}};  // of p1
+  walk.bounds = options_.bounds;
+  walk.bounds.push_back({static_cast<int>(curve_.states()), options_.range1[0], options_.range1[1]});  // of p1
   return walk;
 }
 

@@ -31,10 +31,11 @@ struct CodimensionTwo {
 };
 
 struct TwoParameterOptions {
-  double range1[2] = {0.0, 1.0};  ///< of the first parameter
-  double range2[2] = {0.0, 1.0};  ///< of the second
-  WalkOptions walk;               ///< lower and upper are set from range2; user_values are of the second parameter
-  double tolerance = 1e-10;       ///< of codimension-2 points, relative
+  double range1[2] = {0.0, 1.0};             ///< of the first parameter
+  double range2[2] = {0.0, 1.0};             ///< of the second
+  WalkOptions walk;                          ///< lower, upper and bounds are set here; user_values are of the second parameter
+  std::vector<CoordinateBound> bounds = {};  ///< of unknowns of the problem, at which curves end
+  double tolerance = 1e-10;                  ///< of codimension-2 points, relative
 };
 
 struct DefiningCurve {

@@ -1,6 +1,8 @@
 """Figures of a cycles study: equilibria and the extremes of the limit cycles against the parameter, their periods, and orbits at special points."""
 import numpy as np
 
+import figures_two_parameter
+
 from figures_branches import bifurcation_panel, drawable, write_tags
 from figures_common import (CYCLE, INK, Page, SYMBOLS, draw_branch, knots_of, label, letter, parameter_of, special_keys, special_points,
                             stability_keys, study_words)
@@ -15,7 +17,7 @@ def figures(result):
     names = drawable(result)
     if not names:
         return []
-    return [drawn for drawn in (diagram(result, names), orbits(result)) if drawn]
+    return [drawn for drawn in (diagram(result, names), orbits(result)) if drawn] + figures_two_parameter.figures(result)
 
 
 def is_cycles(branch):

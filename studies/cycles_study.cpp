@@ -4,6 +4,8 @@
 #include <fmt/ranges.h>
 
 #include "studies/common_keys.hpp"
+#include "studies/cycle_chart.hpp"
+#include "studies/cycle_motions.hpp"
 #include "studies/cycle_output.hpp"
 #include "studies/equilibrium_source.hpp"
 
@@ -19,7 +21,23 @@ struct Setup {
   std::string parameter, unit_of_time;
   CycleOptions cycles;
   std::vector<Vector> integrate_from;
+  std::string second;  // "": no chart
+  CycleChart::Options chart;
 };
+
+void add_second_keys(Schema& s) {
+  s.add({.name = "second.parameter",
+         .description = "second parameter of the chart of special points of cycles; without it no chart",
+         .default_value = std::string{}});
+  s.add({.name = "second.range", .description = "its lower and upper end", .default_value = std::vector<double>{}, .optional = true, .max_items = 2});
+  s.add({.name = "second.user_values",
+         .description = "values of the second parameter at which points of every curve are listed (UZ)",
+         .default_value = std::vector<double>{}});
+  s.add({.name = "second.curves",
+         .description = "which special points to follow",
+         .default_value = std::vector<std::string>{"LP", "BP", "PD", "TR"},
+         .choices = {"LP", "BP", "PD", "TR"}});
+}
 
 Schema schema() {
   Schema s("cycles", "limit cycles born at the Hopf points of any system given as expressions, or of a cable's averaged slow flow");
@@ -37,6 +55,12 @@ Schema schema() {
          .description = "in units of the system's time, before a cycle is looked for; as long again to find it",
          .default_value = 500.0,
          .lower = 0.0});
+  s.add_count("cycles.exponents", "intervals over which the Lyapunov exponents of each integrated motion are means; 0: none", 2000, 0, 1e8);
+  s.add({.name = "cycles.exponent_interval",
+         .description = "in units of the system's time, about 1 over the largest exponent or less; 0: a thousandth of cycles.transient",
+         .default_value = 0.0,
+         .lower = 0.0,
+         .closed_lower = true});
   s.add({.name = "cycles.longest_period",
          .description =
              "in units of the system's time: families end where the period of the single cycle passes it; 0: eight periods of the Hopf point",
@@ -52,7 +76,37 @@ Schema schema() {
          .closed_upper = true});
   s.add_count("cycles.segments", "parts of the period whose ends are unknowns; more where multipliers are very large", 8, 1, 200);
   s.add_count("cycles.max_points", "of one branch of cycles in one direction", 1000, 2, 1e6);
+  add_second_keys(s);
   return s;
+}
+
+void read_second(const Configuration& c, Setup& s) {
+  const auto range = c.has("second.range") ? c.numbers("second.range") : std::vector<double>{};
+  s.second = c.text("second.parameter");
+  if (s.second.empty()) {
+    if (!range.empty()) throw c.error("second.range", "goes with second.parameter, which is not given");
+    return;
+  }
+  if (range.size() != 2 || !(range[0] < range[1])) throw c.error("second.range", "must hold two increasing values");
+  if (s.second == s.parameter) throw c.error("second.parameter", "must differ from continuation.parameter");
+  s.source->check_lens("second.parameter", s.second, "second.range", range[0], range[1]);
+  s.chart.second = s.source->value(s.second);
+  if (s.chart.second < range[0] || s.chart.second > range[1])
+    throw c.error("second.range", fmt::format("must contain the value {:g} that {} has in this file", s.chart.second, s.second));
+  TwoParameterOptions& follow = s.chart.follow;
+  follow.walk = s.cycles.network.walk;
+  follow.walk.max_points = static_cast<int>(c.integer("cycles.max_points"));
+  follow.walk.user_values = c.numbers("second.user_values");
+  for (const double x : follow.walk.user_values)
+    if (x < range[0] || x > range[1]) throw c.error("second.user_values", fmt::format("must lie in second.range, got {:g}", x));
+  follow.range1[0] = s.cycles.network.walk.lower;
+  follow.range1[1] = s.cycles.network.walk.upper;
+  follow.range2[0] = range[0];
+  follow.range2[1] = range[1];
+  for (const auto& name : c.texts("second.curves"))
+    for (const EventType type : {EventType::fold, EventType::branch_point, EventType::period_doubling, EventType::torus})
+      if (name == to_string(type)) s.chart.curves.push_back(type);
+  s.chart.cycle = s.cycles.cycle;
 }
 
 Setup setup(const Configuration& c) {
@@ -68,6 +122,8 @@ Setup setup(const Configuration& c) {
   s.cycles.cycle.tolerance = c.number("cycles.tolerance");
   s.cycles.cycle.segments = static_cast<int>(c.integer("cycles.segments"));
   const int n = s.source->problem({s.parameter})->size();
+  if (const auto counted = c.integer("cycles.exponents"); counted > 0 && counted < 20)
+    throw c.error("cycles.exponents", fmt::format("must be 0 or at least 20, got {}", counted));
   const auto& from = c.numbers("cycles.integrate_from");
   if (from.size() % static_cast<std::size_t>(n) != 0) throw c.error("cycles.integrate_from", fmt::format("must hold groups of {} numbers", n));
   for (std::size_t i = 0; i < from.size(); i += static_cast<std::size_t>(n)) s.integrate_from.push_back(Eigen::Map<const Vector>(from.data() + i, n));
@@ -75,6 +131,7 @@ Setup setup(const Configuration& c) {
   for (const double p : c.numbers("cycles.integrate_at"))
     if (p < s.cycles.network.walk.lower || p > s.cycles.network.walk.upper)
       throw c.error("cycles.integrate_at", "each value must lie in continuation.range");
+  read_second(c, s);
   if (n < 2) throw c.error("study", "\"cycles\" needs a system of at least two variables");
   return s;
 }
@@ -107,6 +164,48 @@ void write_family_branch(ResultFile& file, const Branch& b, const CycleFamily& f
     context.warn(fmt::format("branch {} ends at {} = {:.12g} where its period passes cycles.longest_period ({:.6g}): {}", b.name, s.parameter,
                              u[u.size() - 1], family.longest_period, text));
   }
+}
+
+// The motions that integration leads to, and the families of those that are cycles.
+std::vector<IntegratedMotion> integrate(const Configuration& c, const Setup& s, const Problem& flow, CycleBranches& cycles, RunContext& context) {
+  std::vector<IntegratedMotion> motions;
+  const double transient = c.number("cycles.transient"), interval = c.number("cycles.exponent_interval");
+  models::LyapunovSpectrumOptions options;
+  options.interval = interval > 0.0 ? interval : 1e-3 * transient;
+  options.skip = static_cast<int>(std::ceil(transient / options.interval));
+  options.counted = static_cast<int>(c.integer("cycles.exponents"));
+  options.interrupted = &interrupted;
+  for (const double p : c.numbers("cycles.integrate_at"))
+    for (const Vector& x : s.integrate_from) {
+      if (interrupted) return motions;
+      const std::string origin = fmt::format("integrated at {} = {:.6g}", s.parameter, p);
+      context.progress.show(origin);
+      if (const std::string why = cycles.add_motion(x, p, transient, origin); !why.empty()) context.warn(fmt::format("{}: {}", origin, why));
+      if (options.counted > 0) motions.push_back({p, x, models::lyapunov_spectrum(flow, x, Vector::Constant(1, p), options)});
+      if (options.counted > 0 && !motions.back().spectrum.ok() && !interrupted)
+        context.warn(fmt::format("{}: no Lyapunov exponents, the motion diverges", origin));
+    }
+  return motions;
+}
+
+// Every special point of every family in the second parameter.
+void follow_chart(const Setup& s, const CycleBranches& cycles, ResultFile& file, RunContext& context) {
+  const auto flow2 = s.source->problem({s.parameter, s.second});
+  CycleReader reader(*flow2, s.source->columns(*flow2), s.cycles.cycle);
+  CycleChart chart(*flow2, s.chart, reader.extremes(s.unit_of_time), context);
+  const ChartOutput output{s.parameter, s.source->unit(s.parameter), s.second, s.source->unit(s.second)};
+  chart.on_curve([&](const ChartCurve& curve) {
+    output.write_curve(file, curve);
+    file.flush();
+  });
+  for (const auto& family : cycles.families())
+    if (!interrupted) chart.follow(*family);
+  context.progress.clear();
+  const std::vector<ChartCurve> curves = chart.curves();
+  output.write_points(file, "/curve_points", curves);
+  file.flush();
+  context.report.put("curve_points", output.points_json(curves)).put("curves", ChartOutput::curves_json(curves));
+  context.print(fmt::format("\n{}", output.text(curves)));
 }
 
 ExitStatus run(const Configuration& c, RunContext& context) {
@@ -167,20 +266,20 @@ ExitStatus run(const Configuration& c, RunContext& context) {
       if (const std::string why = cycles.add_hopf(b.special[k], origin); !why.empty()) context.warn(fmt::format("{}: {}", origin, why));
     }
   }
-  for (const double p : c.numbers("cycles.integrate_at"))
-    for (const Vector& x : s.integrate_from) {
-      if (interrupted) break;
-      const std::string origin = fmt::format("integrated at {} = {:.6g}", s.parameter, p);
-      if (const std::string why = cycles.add_motion(x, p, c.number("cycles.transient"), origin); !why.empty())
-        context.warn(fmt::format("{}: {}", origin, why));
-    }
+  const std::vector<IntegratedMotion> motions = integrate(c, s, *flow, cycles, context);
+  MotionTable table{s.parameter, s.source->unit(s.parameter), s.unit_of_time, {}};
+  for (int i = 0; i < flow->size(); ++i) table.variables.push_back(fmt::format("x{}", i + 1));
+  table.write(file, motions);
   output.write_special_points(file, all);
   file.flush();
   context.progress.clear();
   if (cycles.families().empty())
     context.warn("no cycles were found: no Hopf point lies in the range, and nothing was met by integration (cycles.integrate_at)");
   output.report(context.report, all);
+  if (!motions.empty()) context.report.put("motions", MotionTable::json(motions, s.parameter));
   context.print(output.text(all));
+  if (!motions.empty()) context.print(fmt::format("\n{}", table.text(motions)));
+  if (!s.second.empty() && !interrupted) follow_chart(s, cycles, file, context);
   return finish(file, context, all);
 }
 
