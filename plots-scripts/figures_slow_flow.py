@@ -7,6 +7,7 @@ import numpy as np
 from figures_branches import bifurcation_panel, drawable, write_tags
 from figures_common import (BLUE, GREEN, GREY, INK, ORANGE, PURPLE, SYMBOLS, VERMILLION, Page, label, letter, line_key, marker_key,
                             parameter_of, special_keys, special_points, stability_keys, study_words)
+from figures_modulation import modulation
 from figures_superharmonic import draw_orbits, finish_sheet, grid, orbit_keys, orbit_reach, ordered, smooth
 
 PANELS = 6       # amplitudes drawn: the largest
@@ -19,7 +20,7 @@ WORDS = {"IP": "in plane", "IPD": "in plane, subharmonic", "W": "coupled", "WD":
 
 
 def figures(result):
-    return [drawn for drawn in (figure(result) for figure in (response, orbits, time, starts)) if drawn]
+    return [drawn for drawn in (figure(result) for figure in (response, orbits, time, starts, modulation)) if drawn]
 
 
 def study(result, **which):

@@ -7,6 +7,7 @@ from figures_branches import bifurcation_panel, drawable, note, write_tags
 from figures_common import (BLUE, DASHES, GREEN, GREY, INK, NB, PURPLE, SKY, SYMBOLS, VERMILLION, Page, damping_words, label,
                             letter, line_key, marker_key, number, parameter_of, special_keys, special_points, stability_keys,
                             study_words)
+from figures_modulation import modulation
 from superharmonic_motions import (AveragedBranches, averaged_orbits, compare, distinct_motions, nearest, order_of, state_of,
                                    sweep_motions)
 
@@ -19,7 +20,7 @@ PLUS = {"markersize": 9, "markeredgewidth": 1.5, "color": INK}
 
 
 def figures(result):
-    all_of_them = (response, whirling_orbits, verification_orbits, spectrum, time_series, error)
+    all_of_them = (response, whirling_orbits, verification_orbits, spectrum, time_series, error, modulation)
     return [drawn for drawn in (figure(result) for figure in all_of_them) if drawn]
 
 

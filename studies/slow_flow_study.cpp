@@ -10,6 +10,7 @@
 #include "core/parallel.hpp"
 #include "studies/branch_output.hpp"
 #include "studies/common_keys.hpp"
+#include "studies/modulation_output.hpp"
 #include "studies/slow_flow_ansatz.hpp"
 #include "studies/slow_flow_verification.hpp"
 
@@ -48,6 +49,7 @@ Schema schema() {
   add_continuation_keys(s, "omega");
   add_seed_keys(s);
   add_verification_keys(s);
+  add_modulation_keys(s);
   s.add_count("verification.transient_periods", "excitation periods recorded from the start of each run from rest", 60, 0, 100000);
   return s;
 }
@@ -223,6 +225,33 @@ void explore(const Configuration& c, const Setup& s, Network& net, RunContext& c
 
 // ---- verification ----------------------------------------------------------------------------------------------------------
 
+// The averaged equations in time, from the starts at rest.
+void run_modulations(const Configuration& c, const Setup& s, ResultFile& file, RunContext& context) {
+  ModulationOptions o;
+  o.periods = static_cast<int>(c.integer("verification.modulation_periods"));
+  if (o.periods == 0 || interrupted) return;
+  o.integrator = settle_options(c).integrator;
+  const ModulationLabels labels{s.forced.coordinates, s.forced.length_unit, s.averaged.ansatz.nu};
+  std::vector<ModulationRun> runs;
+  for (const double omega : c.numbers("verification.omega"))
+    for (const auto& start : starts_of(c, "verification.starts", s.forced.coordinates.size())) {
+      if (interrupted) break;
+      Vector y = Vector::Zero(2 * static_cast<Eigen::Index>(start.size()));
+      y.head(y.size() / 2) = Eigen::Map<const Vector>(start.data(), static_cast<Eigen::Index>(start.size()));
+      std::string name;
+      for (std::size_t i = 0; i < start.size(); ++i) name += fmt::format("{}{} = {:g}", i > 0 ? ", " : "", s.forced.coordinates[i], start[i]);
+      const Vector p = Vector::Constant(1, omega);
+      runs.push_back({omega, name,
+                      modulation(s.forced.at(p), {*s.averaged.flow, s.averaged.ansatz, s.averaged.motion}, p,
+                                 off_symmetry(s.forced, y, c.number("verification.perturbation")), o)});
+    }
+  if (runs.empty()) return;
+  write_modulations(file, labels, runs);
+  file.flush();
+  context.report.put("modulation", modulations_json(labels, runs));
+  context.print(fmt::format("\n{}", modulations_text(labels, runs)));
+}
+
 // Integrated runs beside the branches; what did not settle.
 std::vector<std::string> run_verification(const Configuration& c, const Setup& s, const Network& net, ResultFile& file, RunContext& context) {
   const auto& omegas = c.numbers("verification.omega");
@@ -245,6 +274,7 @@ std::vector<std::string> run_verification(const Configuration& c, const Setup& s
   context.progress.clear();
   if (!runs.empty()) context.print(fmt::format("\n{}", integrated_text(s.forced, s.averaged, runs)));
   report_integrated(context.report, s.forced, s.averaged, runs);
+  run_modulations(c, s, file, context);
   return not_settled(runs);
 }
 

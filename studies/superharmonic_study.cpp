@@ -10,6 +10,7 @@
 #include "models/closed_forms.hpp"
 #include "studies/branch_output.hpp"
 #include "studies/common_keys.hpp"
+#include "studies/modulation_output.hpp"
 #include "studies/verification.hpp"
 
 namespace whirl::studies {
@@ -36,6 +37,7 @@ Schema schema() {
   s.add_count("continuation.seed_grid", "parameter values at which all closed-form solutions are tried as starts of further branches; 0: none", 61, 0,
               100000);
   add_verification_keys(s);
+  add_modulation_keys(s);
   s.add({.name = "orbits.omega",
          .unit = "rad/s",
          .description = "frequency at which whirling orbits are drawn for several dampings",
@@ -164,6 +166,33 @@ VerificationOptions verification_of(const Configuration& c, const Setup& s) {
   return o;
 }
 
+// The averaged equations in time, from the starts at rest.
+void run_modulations(const Configuration& c, const Setup& s, const SuperharmonicFlow& flow, ResultFile& file, RunContext& context) {
+  models::ModulationOptions o;
+  o.periods = static_cast<int>(c.integer("verification.modulation_periods"));
+  if (o.periods == 0 || interrupted || !c.has("verification.omega")) return;
+  const VerificationOptions v = verification_of(c, s);
+  o.integrator = v.settle.integrator;
+  const models::Ansatz ansatz = models::Ansatz::superharmonic(2, s.flow.order);
+  std::vector<ModulationRun> runs;
+  for (const double omega : c.numbers("verification.omega"))
+    for (std::size_t i = 0; i + 1 < v.starts.size() && !interrupted; i += 2) {
+      auto stay = s.stay;
+      stay.omega = omega;
+      const auto system = nielsen_kirkegaard(stay, stay_model(stay.cable, s.flow.coefficients), s.terms);
+      const Eigen::Vector4d y(v.starts[i] + v.perturbation, v.starts[i + 1], 0.0, 0.0);
+      const models::AveragedFlow averaged{flow, ansatz, [&](In u, double t) { return flow.motion(u, t); }};
+      runs.push_back({omega, fmt::format("q1 = {:g}, q2 = {:g}", v.starts[i], v.starts[i + 1]),
+                      models::modulation(system, averaged, Vector::Constant(1, omega), y, o)});
+    }
+  if (runs.empty()) return;
+  const ModulationLabels labels{{"q1", "q2"}, "m", 1};
+  write_modulations(file, labels, runs);
+  file.flush();
+  context.report.put("modulation", modulations_json(labels, runs));
+  context.print(fmt::format("\n{}", modulations_text(labels, runs)));
+}
+
 // Integrated runs and sweeps beside the branches; what did not settle.
 std::vector<std::string> run_verification(const Configuration& c, const Setup& s, const SuperharmonicFlow& flow, const Network& net, ResultFile& file,
                                           RunContext& context) {
@@ -185,6 +214,7 @@ std::vector<std::string> run_verification(const Configuration& c, const Setup& s
   if (!runs.empty()) context.print(fmt::format("\n{}", runs_text(runs, flow, s.flow.order)));
   std::vector<std::string> failures = not_settled(runs);
   report_runs(context.report, runs, flow, s.flow.order);
+  run_modulations(c, s, flow, file, context);
   const int points = static_cast<int>(c.integer("verification.sweep_points"));
   if (points < 2 || interrupted) return failures;
   std::vector<double> up, down;
