@@ -37,6 +37,19 @@ bool CycleChart::is_known(const SpecialPoint& point, int multiple) const {
   return false;
 }
 
+void CycleChart::say_ends(const DefiningCurve& curve, const CycleFamily& family) const {
+  const auto k = curve.u.rows() - 2;
+  for (const Eigen::Index column : {Eigen::Index{0}, curve.u.cols() - 1}) {
+    const Vector u = curve.u.col(column);
+    const bool shrinks = u[LimitCycle::first_harmonic] <= 1.000001 * family.least_harmonic;
+    if (!shrinks && u[LimitCycle::log_period] < std::log(family.longest_period) - 1e-9) continue;
+    context_.warn(fmt::format("curve {} ends at {} = {:.8g}, {} = {:.8g} where its cycle {}", curve.name, flow2_.parameter_names()[0], u[k],
+                              flow2_.parameter_names()[1], u[k + 1],
+                              shrinks ? "shrinks to an equilibrium: a curve of folds does so at a generalised Hopf point"
+                                      : fmt::format("passes cycles.longest_period ({:.6g})", family.longest_period)));
+  }
+}
+
 // Without the points that only `is_known` asked for.
 ChartCurve CycleChart::shown(ChartCurve curve) const {
   const auto& asked = options_.follow.walk.user_values;
@@ -67,11 +80,12 @@ void CycleChart::follow(const CycleFamily& family) {
     chart.want(options_.curves);
     chart.set_observer([](const Branch&, int) { return !interrupted; });
     chart.on_warning([this](const std::string& text) { context_.warn(text); });
-    chart.on_curve([this, level](DefiningCurve& curve) {
+    chart.on_curve([this, level, &family](DefiningCurve& curve) {
       curve.name = fmt::format("{}{}", curve.subtype.empty() ? to_string(curve.type) : curve.subtype.c_str(), curves_.size() + 1);
       curves_.push_back({.curve = curve, .columns = columns_});
       multiple_.push_back(1 << level);
       if (on_curve_) on_curve_(shown(curves_.back()));
+      say_ends(curve, family);
       context_.progress.show(fmt::format("curve {}", curve.name));
     });
     for (const Branch& b : family.net->network(level).branches())

@@ -34,6 +34,7 @@ class CycleChart {
  private:
   bool is_known(const continuation::SpecialPoint& point, int multiple) const;
   ChartCurve shown(ChartCurve curve) const;
+  void say_ends(const continuation::DefiningCurve& curve, const CycleFamily& family) const;
 
   const Problem& flow2_;
   Options options_;

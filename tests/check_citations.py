@@ -8,7 +8,7 @@ import pathlib
 import re
 import sys
 
-FOLDERS = ["core", "continuation", "models", "studies", "tests", "plots-scripts", "."]  # "." without its subfolders
+FOLDERS = ["core", "continuation", "models", "studies", "tests", "plots-scripts", "docs", "."]  # "." without its subfolders
 SUFFIXES = {".cpp", ".hpp", ".py", ".md", ".toml"}
 BRACKET = re.compile(r"\[([^\[\]]*)\]")
 KEY = re.compile(r"\b[A-Z][A-Za-z]+(?:18|19|20)[0-9]{2}[a-z]?\b")

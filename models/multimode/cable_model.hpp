@@ -11,7 +11,7 @@
 ///   quasi_static   the cable evens its tension out at once (longitudinal waves are far above the modes): V = (1/2) epsbar^2,
 ///                  epsbar = e1 + (e2^2 + e3^2)/2 + sum r t_a p_a + (1/2) sum S_ab p_a p_b,  stiffness AE/(1 + 8 r^2/3) as in lambda2
 ///
-/// The cubic coefficient of one sine is 3 pi^4/8 in the first and pi^4/4 in the second, half as stiff again: see studies/mode-convergence.md.
+/// The cubic coefficient of one sine is 3 pi^4/8 in the first and pi^4/4 in the second, half as stiff again: see docs/kinds/mode-convergence.md.
 /// Linear stiffness is that of the linear theory in both (omega_a^2, diagonal) or, for plain sines, the string's with the sag's coupling.
 ///
 ///     q_a'' + 2 zeta omega_a q_a' + omega_a^2 q_a + (K L/m_a) dV/dp_a = load_a cos(omega t),  K = AE/(mu L^2)

@@ -1,4 +1,4 @@
-// The printed tables of [Gale1976] entry by entry: which do not hold. The list stands in studies/catenary-modes.md; this test writes it anew and
+// The printed tables of [Gale1976] entry by entry: which do not hold. The list stands in docs/kinds/catenary-modes.md; this test writes it anew and
 // compares.
 #include <fmt/format.h>
 
@@ -93,7 +93,7 @@ TEST_CASE("catenary printed: the list of entries that do not hold stands in the 
   forced(list);
   const std::string begin = "<!-- printed entries -->\n", end = "<!-- end of printed entries -->";
   const std::string table_text = "| table | h/b | $b/\\sqrt{l^2-h^2}$ | entry | printed | true, and ours |\n|---|---|---|---|---|---|\n" + list.rows;
-  const std::string page_path = std::string(WHIRL_SOURCE_DIR) + "/studies/catenary-modes.md";
+  const std::string page_path = std::string(WHIRL_SOURCE_DIR) + "/docs/kinds/catenary-modes.md";
   std::ifstream in(page_path);
   std::stringstream content;
   content << in.rdbuf();
