@@ -160,7 +160,7 @@ bool CycleBranches::knows(double period, double p) const {
 
 std::string CycleBranches::add_motion(const Vector& x0, double p, double transient, const std::string& origin) {
   const std::optional<FlowCycle> met = settle_on_cycle(flow_, x0, Vector::Constant(1, p), {.transient = transient});
-  if (!met) return "no periodic motion was met";
+  if (!met) return not_periodic;
   if (knows(met->period, p)) return "the motion met is on a branch known";
   Eigen::Index most = 0;
   (met->x.rowwise().maxCoeff() - met->x.rowwise().minCoeff()).maxCoeff(&most);

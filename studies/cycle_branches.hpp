@@ -55,6 +55,7 @@ class CycleBranches {
   void set_observer(continuation::Observer observer) { observer_ = std::move(observer); }
   /// Follows the family of this Hopf point; empty if it is one, a reason if there is none.
   std::string add_hopf(const continuation::SpecialPoint& hopf, const std::string& origin);
+  static constexpr const char* not_periodic = "no periodic motion was met";
   /// Integrates from x0 at parameter value p over `transient`, and follows the family of the stable cycle met; empty, or a reason if there is none.
   std::string add_motion(const Vector& x0, double p, double transient, const std::string& origin);
   const std::vector<std::unique_ptr<CycleFamily>>& families() const { return families_; }

@@ -180,10 +180,13 @@ std::vector<IntegratedMotion> integrate(const Configuration& c, const Setup& s, 
       if (interrupted) return motions;
       const std::string origin = fmt::format("integrated at {} = {:.6g}", s.parameter, p);
       context.progress.show(origin);
-      if (const std::string why = cycles.add_motion(x, p, transient, origin); !why.empty()) context.warn(fmt::format("{}: {}", origin, why));
-      if (options.counted > 0) motions.push_back({p, x, models::lyapunov_spectrum(flow, x, Vector::Constant(1, p), options)});
-      if (options.counted > 0 && !motions.back().spectrum.ok() && !interrupted)
-        context.warn(fmt::format("{}: no Lyapunov exponents, the motion diverges", origin));
+      const std::string why = cycles.add_motion(x, p, transient, origin);
+      if (!why.empty()) context.warn(fmt::format("{}: {}", origin, why));
+      if (options.counted == 0 || interrupted) continue;
+      motions.push_back({p, x, models::lyapunov_spectrum(flow, x, Vector::Constant(1, p), options)});
+      models::LyapunovSpectrum& spectrum = motions.back().spectrum;
+      if (spectrum.kind == models::FlowMotion::torus && why != CycleBranches::not_periodic) spectrum.kind = models::FlowMotion::cycle;  // it closed
+      if (!spectrum.ok() && !interrupted) context.warn(fmt::format("{}: no Lyapunov exponents, the motion diverges", origin));
     }
   return motions;
 }

@@ -8,6 +8,8 @@
 #include "continuation/network.hpp"
 #include "models/equilibrium_model.hpp"
 #include "studies/cycle_chart.hpp"
+#include "studies/result_file.hpp"
+#include "tests/studies/program.hpp"
 
 using namespace whirl;
 using namespace whirl::models;
@@ -124,4 +126,66 @@ TEST_CASE("period doublings of the whirling string in (d, f), one curve through 
                                  {-5.96477083384, 3.7009538248, 3.977943415}};
   const Charted c(model, "d", {-13.0, -2.0}, "f", {3.0, 4.6}, rows, {EventType::period_doubling}, 5.2);
   c.require(rows, true);
+}
+
+TEST_CASE("cycles by the program: chart and motions in the file, bad input in one line") {
+  const studies::tests::Folder f;
+  const std::string run = std::string("run ") + WHIRL_SOURCE_DIR + "/studies/roessler-cycles.toml --set cycles.period_doublings=0 ";
+  const auto good = studies::tests::program(
+      f,
+      run + "--set second.parameter=a --set second.range=[0.15,0.25] --set cycles.integrate_at=[2.6,5.7] --set cycles.exponents=400 --json -o r.h5");
+  INFO(good.err);
+  REQUIRE(good.status == 0);
+  const ResultReader file(f / "r.h5");
+  CHECK(file.column("/curves/PD1", "a").values.size() > 5);
+  CHECK(file.column("/curves/PD1", "cycle_period").values.front() > 5.0);
+  CHECK(file.text_column("/motions", "motion").values == std::vector<std::string>{"periodic", "chaotic"});
+  const auto sum = file.column("/motions", "lyapunov_sum").values, divergence = file.column("/motions", "divergence").values;
+  for (std::size_t i = 0; i < 2; ++i) CHECK(sum[i] == Approx(divergence[i]).epsilon(1e-6));
+  CHECK(good.out.find("\"motions\"") != std::string::npos);
+  CHECK(good.out.find("\"curves\"") != std::string::npos);
+  const std::pair<std::string, std::string> cases[] = {
+      {"--set second.parameter=c --set second.range=[0.1,0.3]", "second.parameter"},
+      {"--set second.parameter=a --set second.range=[0.3,0.4]", "second.range"},
+      {"--set second.parameter=a --set second.range=[0.3,0.1]", "second.range"},
+      {"--set second.range=[0.1,0.3]", "second.parameter"},
+      {"--set second.parameter=q --set second.range=[0.1,0.3]", "second.parameter"},
+      {"--set cycles.exponents=7", "cycles.exponents"},
+  };
+  for (const auto& [arguments, expected] : cases) {
+    const auto bad = studies::tests::program(f, run + arguments + " -o x.h5");
+    INFO(arguments << "\n" << bad.err);
+    CHECK(bad.status == 2);
+    CHECK(std::count(bad.err.begin(), bad.err.end(), '\n') == 1);
+    CHECK(bad.err.find(expected) != std::string::npos);
+    CHECK_FALSE(std::filesystem::exists(f / "x.h5"));
+  }
+}
+
+TEST_CASE("superharmonic and slow-flow: averaged equations in time are in the file") {
+  const studies::tests::Folder f;
+  const std::string folder = std::string("run ") + WHIRL_SOURCE_DIR + "/studies/";
+  const std::string quick =
+      " --set support_motion.amplitude=0.15 --set verification.omega=[1.58] --set verification.starts=[0.0,0.0] --set verification.perturbation=0 "
+      "--json ";
+  for (const std::string& study : {std::string("oresund-superharmonic.toml --set verification.sweep_points=0 --set orbits.damping_pairs=[]"),
+                                   std::string("oresund-combinatorial.toml --set ansatz.kind=frozen --set ansatz.order=2 --set seeds.grid=1 --set "
+                                               "seeds.random=0 --set 'seeds.starts=[0.0,0.0]'")}) {
+    const auto r = studies::tests::program(f, folder + study + quick + "-o m.h5");
+    INFO(study << "\n" << r.err);
+    REQUIRE(r.status == 0);
+    const ResultReader file(f / "m.h5");
+    const std::string run1 = "/verification/modulation/run1";
+    const auto u = file.column(run1, "q2_h2_u").values, v = file.column(run1, "q2_h2_v").values;
+    const auto au = file.column(run1, "averaged_q2_h2_u").values, av = file.column(run1, "averaged_q2_h2_v").values;
+    double top = 0.0, averaged_top = 0.0;
+    for (std::size_t i = 0; i < u.size(); ++i) {
+      top = std::max(top, std::hypot(u[i], v[i]));
+      averaged_top = std::max(averaged_top, std::hypot(au[i], av[i]));
+    }
+    CHECK(top == Approx(0.7444).margin(5e-4));
+    CHECK(averaged_top == Approx(0.7033).margin(1e-4));
+    CHECK(r.out.find("\"modulation\"") != std::string::npos);
+    CHECK(file.column(run1, "t").values.size() == 60 * 32 + 1);
+  }
 }
