@@ -125,7 +125,11 @@ Vector Network::regular_start(const Vector& u0) const {
   };
   const double reciprocal_at = condition(at);
   if (reciprocal_at > 1e-5) return u0;
-  const auto better = [&](const Vector& u) { return condition(u) > 30.0 * reciprocal_at; };
+  const auto within = [&](const Vector& u) {  // the same branch may go on where the walk may not
+    return std::all_of(options_.walk.bounds.begin(), options_.walk.bounds.end(),
+                       [&](const CoordinateBound& b) { return u[b.index] >= b.lower && u[b.index] <= b.upper; });
+  };
+  const auto better = [&](const Vector& u) { return within(u) && condition(u) > 30.0 * reciprocal_at; };
   for (const double part : {1e-4, -1e-4, 1e-3, -1e-3, 1e-2, -1e-2}) {
     Vector beside = at;
     beside[n] += part * (options_.walk.upper - options_.walk.lower);

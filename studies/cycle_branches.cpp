@@ -126,11 +126,10 @@ std::string CycleBranches::add_hopf(const SpecialPoint& hopf, const std::string&
   const double period = 2.0 * std::numbers::pi / hopf.frequency;
   family->least_harmonic = end_part * u0[LimitCycle::first_harmonic];
   family->longest_period = options_.longest_period > 0.0 ? options_.longest_period : options_.longest_multiple * period;
-  follow(std::move(family), u0);
-  return "";
+  return follow(std::move(family), u0);
 }
 
-void CycleBranches::follow(std::unique_ptr<CycleFamily> family, const Vector& u0) {
+std::string CycleBranches::follow(std::unique_ptr<CycleFamily> family, const Vector& u0) {
   NetworkOptions network = options_.network;
   constexpr double infinity = std::numeric_limits<double>::infinity();
   network.walk.bounds.push_back({LimitCycle::first_harmonic, family->least_harmonic, infinity});
@@ -147,6 +146,11 @@ void CycleBranches::follow(std::unique_ptr<CycleFamily> family, const Vector& u0
   });
   kept.net->add_seed(u0, kept.origin);
   kept.net->switch_branches();
+  if (!kept.net->network(0).branches().empty()) return "";
+  const auto& notes = kept.net->network(0).notes();
+  std::string why = notes.empty() ? "a cycle was found beside it, which no branch could be walked from" : notes.front();
+  families_.pop_back();
+  return why;
 }
 
 // The same period at the same parameter value: one family, unless two have it by chance.
@@ -179,8 +183,7 @@ std::string CycleBranches::add_motion(const Vector& x0, double p, double transie
   if (!at.ok()) return "Newton does not converge on the motion met";
   family->least_harmonic = motion_end_part * at.x[LimitCycle::first_harmonic];
   family->longest_period = options_.longest_period > 0.0 ? options_.longest_period : options_.longest_multiple * met->period;
-  follow(std::move(family), at.x);
-  return "";
+  return follow(std::move(family), at.x);
 }
 
 }  // namespace whirl::studies

@@ -63,7 +63,7 @@ class CycleBranches {
  private:
   bool ends_at(const continuation::SpecialPoint& hopf) const;
   Vector start(const models::LimitCycle& cycle, const continuation::SpecialPoint& hopf) const;
-  void follow(std::unique_ptr<CycleFamily> family, const Vector& u0);
+  std::string follow(std::unique_ptr<CycleFamily> family, const Vector& u0);  // "", or why there is no branch
   bool knows(double period, double p) const;
 
   const Problem& flow_;

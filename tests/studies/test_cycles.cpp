@@ -277,3 +277,32 @@ TEST_CASE("Lorenz: the subcritical family down to period 1.8", "[cycles]") {
   CHECK(family.problem(0).divergence(b.u(b.points() / 2)) ==
         Approx(-(11.0 + 8.0 / 3.0) * family.problem(0).period(b.u(b.points() / 2))).epsilon(1e-10));
 }
+
+TEST_CASE("peroxidase-oxidase: torus points of a stiff family whose start Newton would leave for its mirror image", "[cycles]") {
+  const EquilibriumModel model{.variables = {"A", "B", "X", "Y"},
+                               .parameters = {{"k7", 0.6}},
+                               .rhs = {"-0.1631021*A*B*X - 0.046875*A*B*Y + k7 - 0.1175*A", "-0.1631021*A*B*X - 0.046875*A*B*Y + 0.5",
+                                       "0.1631021*A*B*X - 2500*X^2 + 0.09375*A*B*Y - 20*X + 0.001", "-0.046875*A*B*Y + 2500*X^2 - 1.104*Y"},
+                               .initial = {2.0, 25.0, 0.01, 0.1},
+                               .mirrors = {}};
+  Diagram d(model, "k7", 0.55, 0.95, {.cycle = {.tolerance = 1e-11}, .period_doublings = 0, .longest_period = 25.0});
+  REQUIRE(d.cycles->families().size() == 1);
+  const auto points = d.points();
+  require_point(points, "TR", 0.71643356438, 10.9121268777);
+  require_point(points, "TR", 0.818565885283, 14.7224457225);
+  CHECK(count(points, "TR") == 2);
+  CHECK(count(points, "unresolved") == 0);
+}
+
+TEST_CASE("adaptive control: three doublings, all supercritical", "[cycles]") {
+  const EquilibriumModel model{
+      .variables = {"x", "y", "z"}, .parameters = {{"al", 1.2}}, .rhs = {"y", "z", "-al*z - y - x + x^2"}, .initial = {0.0, 0.0, 0.0}, .mirrors = {}};
+  Diagram d(model, "al", 0.4, 1.3, {.cycle = {.tolerance = 1e-11}, .period_doublings = 2});
+  const double doublings[] = {0.63030200616, 0.579629840896, 0.569222719606}, periods[] = {6.36407133944, 12.7343655422, 25.4737384995};
+  for (int level = 0; level < 3; ++level) {
+    require_point(d.points(level), "PD", doublings[level], periods[level]);
+    for (const Branch& b : d.cycles->families().front()->net->network(level).branches())
+      for (const SpecialPoint& s : b.special)
+        if (s.type == EventType::period_doubling) CHECK((s.has_coefficient && s.coefficient < 0.0));
+  }
+}
