@@ -40,7 +40,7 @@ struct OpenResult {
     return tree.holds_columns() || (tells_end() && !empty_end);
   }
   void commit() {
-    tree.commit();
+    if (tree.changed()) tree.commit();
     if (is_worth_publishing()) file.publish();
   }
   void end(const std::string& outcome, const std::vector<std::string>& reasons);

@@ -52,6 +52,8 @@ struct ResultTree::Extended {
 ResultTree::ResultTree(AppendFile& file) : file_(file), root_(std::make_unique<Group>()) {}
 ResultTree::~ResultTree() = default;
 
+bool ResultTree::changed() const { return root_->changed; }
+
 ResultTree::Group& ResultTree::group(const std::string& path) {
   Group* current = root_.get();
   current->changed = true;

@@ -3,7 +3,8 @@
 ///     WHIRL_FAULT=before|half|after|full|count WHIRL_FAULT_AT=17 WHIRL_FAULT_LOG=log LD_PRELOAD=libwhirl_write_faults.so whirl run ...
 ///
 /// Changes are counted from 1: writes at a place in a file, renaming, truncating, flushing to the disk. `before`, `half` and `after` kill around the
-/// chosen one; `full` lets no file grow from it on. The log gets "changes commits" (a commit is a write of 48 bytes at 0) at the end or at the kill.
+/// chosen one; `full` lets no file grow from it on. The log gets "changes commits refused"
+/// (a commit is a write of 48 bytes at 0; refused are writes that found the disk full) at the end or at the kill.
 
 #include <dlfcn.h>
 #include <fcntl.h>
@@ -22,7 +23,7 @@ namespace {
 
 constexpr size_t whole_writes = 512;  // what the kernel copies in one piece: a kill comes before or after
 
-std::atomic<long> changes{0}, commits{0};
+std::atomic<long> changes{0}, commits{0}, refused{0};
 
 const char* setting(const char* name) {
   const char* value = std::getenv(name);
@@ -34,8 +35,8 @@ long chosen() { return std::atol(setting("WHIRL_FAULT_AT")); }
 void write_log() {
   const int fd = ::open(setting("WHIRL_FAULT_LOG"), O_WRONLY | O_CREAT | O_TRUNC, 0666);
   if (fd < 0) return;
-  char text[64];
-  const int n = std::snprintf(text, sizeof text, "%ld %ld\n", changes.load(), commits.load());
+  char text[96];
+  const int n = std::snprintf(text, sizeof text, "%ld %ld %ld\n", changes.load(), commits.load(), refused.load());
   (void)!::write(fd, text, static_cast<size_t>(n));
   ::close(fd);
 }
@@ -72,6 +73,7 @@ ssize_t change_write(int fd, const void* data, size_t size, off_t at) {
     struct stat s {};
     ::fstat(fd, &s);
     if (at >= s.st_size) {
+      ++refused;
       errno = ENOSPC;
       return -1;
     }
