@@ -12,6 +12,7 @@
 #include "studies/apart.hpp"
 #include "studies/export.hpp"
 #include "studies/interruption.hpp"
+#include "studies/json_tables.hpp"
 #include "studies/modes_study.hpp"
 #include "studies/open_results.hpp"
 #include "studies/registry.hpp"
@@ -68,7 +69,10 @@ ExitStatus run(const std::string& file, const std::vector<std::string>& override
   }
   for (const char* key : {"special_points", "branches"})  // in the report of every kind
     if (!context.report.has(key)) context.report.put(key, Json::array());
-  if (json) fmt::print("{}", context.report.text());
+  if (json) {
+    if (!context.report.has("tables")) context.report.put("tables", tables_json(context.output));
+    fmt::print("{}", context.report.text());
+  }
   if (!quiet) fmt::print(stderr, "{}result: {}\n", interrupted ? "interrupted; " : "", context.output.string());
   return status;
 }

@@ -71,9 +71,29 @@ def every_kind_prints_strict_json(folder):
     kinds = [line.split()[0] for line in whirl(folder, "list").stdout.splitlines()]
     check(set(kinds) == set(BRIEF), f"kinds without a brief input: {set(kinds) ^ set(BRIEF)}")
     for kind in kinds:
-        told, _ = run(folder, whirl(folder, "init", kind).stdout, *BRIEF[kind])
+        told, path = run(folder, whirl(folder, "init", kind).stdout, *BRIEF[kind])
         check(told["kind"] == kind and told["outcome"] == "complete", f"{kind}: {told['kind']}, {told['outcome']}")
         check(isinstance(told["warnings"], list) and isinstance(told["stop_reasons"], list), kind)
+        tables_are_those_of(told, path, kind)
+
+
+def tables_are_those_of(told, path, kind):
+    """Every group of columns in the file is a table of the JSON, short ones with their values."""
+    with h5py.File(path, "r") as file:
+        groups = {}
+        file.visititems(lambda name, node: groups.setdefault("/" + name.rpartition("/")[0], {}).update({name.rpartition("/")[2]: node})
+                        if isinstance(node, h5py.Dataset) and node.ndim == 1 else None)
+        check(groups and {t["name"] for t in told["tables"]} == set(groups), f"{kind}: tables {[t['name'] for t in told['tables']]}")
+        for table in told["tables"]:
+            columns = groups[table["name"]]
+            check({c["name"] for c in table["columns"]} == set(columns), f"{kind}: columns of {table['name']}")
+            for c in table["columns"]:
+                node = columns[c["name"]]
+                check(len(node) == table["rows"], f"{kind}: rows of {table['name']}")
+                check(c.get("unit") == node.attrs.get("units"), f"{kind}: unit of {table['name']}/{c['name']}")
+                check(("values" in c) == (table["rows"] <= 200), f"{kind}: values of {table['name']}")
+                values = [v.decode() if isinstance(v, bytes) else None if not math.isfinite(v) else v for v in node[()]]
+                check(c.get("values", values) == values, f"{kind}: {table['name']}/{c['name']}")
 
 
 def tables_go_to_standard_output(folder):
@@ -270,6 +290,50 @@ def what_does_not_settle_is_told(folder):
     check(any(row["motion"] == "unsettled" and row["why"] for row in told["verification"]), "rows")
     with h5py.File(path) as file:
         check(file["study"].attrs["outcome"] in (b"partial", "partial"), "outcome")
+
+
+# what makes a run of each kind end before it is whole
+PARTIAL = {
+    "superharmonic": ["continuation.range=[1.55,1.7]", "verification.enabled=false", "continuation.max_points=3"],
+    "continuation": ["continuation.max_points=3"],
+    "cycles": ["cycles.period_doublings=0", "continuation.max_points=3"],
+    "periodic": ["continuation.range=[1.5,1.6]", "seeds.grid=3", "continuation.max_points=3"],
+    "slow-flow": ["continuation.range=[1.6,1.65]", "verification.enabled=false", "seeds.max_periods=0", "continuation.max_points=3"],
+    "integrate": ["integrate.omega=[1.65]", "integrate.starts=[3.0,0.0]", "sweep.range=[]", "integration.max_periods=20"],
+    "basins": ["basins.resolution=[3,3]", "integration.max_periods=20"],
+}
+
+
+def averaged_extremes(folder):
+    """q_crest, q_trough and q_max of averaged states are those of the sum of their harmonics."""
+    samples = [2.0 * math.pi * i / 2000 for i in range(2000)]
+    told, path = run(folder, whirl(folder, "init", "superharmonic").stdout, *BRIEF["superharmonic"])
+    with h5py.File(path, "r") as file:
+        branches = [{k: v[()] for k, v in group.items()} for group in file["branches"].values()]
+    for table in branches:
+        for i in range(0, len(table["residual"]), 1 + len(table["residual"]) // 4):
+            for q, harmonics in (("q1", [2]), ("q2", [1, 2])):
+                waves = [(h, table[f"{q}_h{h}"][i], table[f"{q}_h{h}_phase"][i]) for h in harmonics]
+                motion = [sum(a * math.cos(h * t + phase) for h, a, phase in waves) for t in samples]
+                size = max(map(abs, motion))
+                for column, value in (("crest", max(motion)), ("trough", min(motion)), ("max", size)):
+                    got = table[f"{q}_{column}"][i]
+                    check(0.0 <= abs(got) - abs(value) + 1e-12 <= 1e-4 * size + 2e-12, f"{q}_{column} {got}, sampled {value}")
+    check(all(f"{q}_{c}" in p for p in told["special_points"] for q in ("q1", "q2") for c in ("crest", "trough", "max")), "no extremes in the JSON")
+
+
+def a_partial_run_tells_why(folder):
+    for kind, overrides in PARTIAL.items():
+        with open(os.path.join(folder, "my.toml"), "w") as file:
+            file.write(whirl(folder, "init", kind).stdout)
+        done = whirl(folder, "run", "my.toml", "-q", "-o", "r.h5", *[word for each in overrides for word in ("--set", each)])
+        check(done.returncode == 1, f"{kind}: status {done.returncode}: {done.stderr}")
+        lines = [line for line in done.stderr.splitlines() if line.startswith("error: ")]
+        check(len(lines) == 1 and len(lines[0]) > len("error: the run is incomplete: "), f"{kind}: {done.stderr}")
+        with h5py.File(os.path.join(folder, "r.h5"), "r") as file:
+            study = file["study"].attrs
+            check(study["outcome"] == "partial", f"{kind}: {study['outcome']}")
+            check(any(r.split(": ", 1)[-1] in lines[0] for r in study["stop_reasons"]), f"{kind}: {lines[0]}; {study['stop_reasons']}")
 
 
 def command_line(folder):
