@@ -227,14 +227,16 @@ ExitStatus run(const Configuration& c, RunContext& context) {
   if (!rows.empty()) write_attractors(file, rows, map, s);
   write_accuracy(file, map, seconds);
   const auto unsettled = (map.cell.array() == BasinMap::unsettled).count();
-  if (unsettled > 0) context.warn(fmt::format("{} starts did not settle within {} excitation periods", unsettled, s.options.settle.max_periods));
   report(context.report, rows, map, s, seconds);
   std::vector<std::vector<std::string>> shares;
   for (std::size_t i = 0; i < rows.size(); ++i) shares.push_back({fmt::format("{:.2f} %", 100.0 * map.share(static_cast<int>(i)))});
   context.print(attractor_text(rows, s.forced, {"share"}, shares));
   context.print(fmt::format("{} starts, {} integrated in {:.1f} s ({:.0f} per second); {} checked again, {} of them went elsewhere\n",
                             map.cell.size(), map.integrated, seconds, static_cast<double>(map.integrated) / seconds, map.checked, map.disagreed));
-  return finish(file, context, unsettled == 0 && !rows.empty() ? ExitStatus::ok : ExitStatus::numerical_failure);
+  if (unsettled > 0) context.warn(fmt::format("{} starts did not settle within {} excitation periods", unsettled, s.options.settle.max_periods));
+  if (unsettled > 0) return finish(file, context, ExitStatus::numerical_failure, {context.warnings.back()});
+  return rows.empty() ? finish(file, context, ExitStatus::numerical_failure, {"no start settled on an attractor"})
+                      : finish(file, context, ExitStatus::ok);
 }
 
 }  // namespace

@@ -245,12 +245,28 @@ void warn_of_unresolved(const continuation::Branch& b, RunContext& context) {
   if (count > most) context.warn(fmt::format("branch {}: {} more changes of stability are unresolved", b.name, count - most));
 }
 
+// `why` a run that is not whole is not: its last line on standard error, whatever was warned of before.
+ExitStatus end_run(ResultFile& file, RunContext& context, ExitStatus status, const std::vector<std::string>& reasons, const std::string& why) {
+  end_begins();
+  if (interrupted) status = ExitStatus::stopped_by_user;
+  const std::string outcome = status == ExitStatus::ok ? "complete" : interrupted ? "interrupted" : "partial";
+  context.report.put("stop_reasons", Json::array(reasons)).put("warnings", Json::array(context.warnings)).put("outcome", outcome);
+  file.attribute("/study", "stop_reasons", reasons);
+  file.attribute("/study", "warnings", context.warnings);
+  file.attribute("/study", "outcome", outcome);
+  file.flush();
+  if (!published(file)) fmt::print(stderr, "{}: no result yet, an older one is left as it was\n", file.path().string());
+  if (status == ExitStatus::numerical_failure) fmt::print(stderr, "error: the run is incomplete: {}\n", why);
+  return status;
+}
+
 }  // namespace
 
 ExitStatus finish(ResultFile& file, RunContext& context, const std::vector<continuation::Branch>& branches,
                   const std::vector<std::string>& failures) {
   ExitStatus status = ExitStatus::ok;
   std::vector<std::string> reasons;
+  std::string why;
   for (const auto& b : branches) {
     reasons.push_back(fmt::format("{}: {}, {}", b.name, to_string(b.start_reason), to_string(b.stop_reason)));
     const auto early = [](continuation::StopReason r) {
@@ -260,36 +276,30 @@ ExitStatus finish(ResultFile& file, RunContext& context, const std::vector<conti
     if (early(b.start_reason))
       context.warn(fmt::format("branch {} ended early: {}{}", b.name, to_string(b.start_reason), alike ? " at both ends" : ""));
     if (early(b.stop_reason) && !alike) context.warn(fmt::format("branch {} ended early: {}", b.name, to_string(b.stop_reason)));
-    if (early(b.start_reason) || early(b.stop_reason)) status = ExitStatus::numerical_failure;
+    if (early(b.start_reason) || early(b.stop_reason)) {
+      status = ExitStatus::numerical_failure;
+      if (why.empty()) why = fmt::format("branch {}", reasons.back());
+    }
     warn_of_unresolved(b, context);
   }
   if (branches.empty()) {
     status = ExitStatus::numerical_failure;
     reasons.emplace_back("no branch: no start led to a solution");
+    why = reasons.back();
   }
   for (const auto& failure : failures) {
     status = ExitStatus::numerical_failure;
     context.warn(failure);
     reasons.push_back(failure);
+    why = failure;
   }
-  return finish(file, context, status, reasons);
+  return end_run(file, context, status, reasons, why);
 }
 
 ExitStatus finish(ResultFile& file, RunContext& context, ExitStatus status, const std::vector<std::string>& reasons) {
-  end_begins();
-  if (interrupted) status = ExitStatus::stopped_by_user;
   const bool silent = status == ExitStatus::numerical_failure && reasons.empty();
   const std::vector<std::string> told = !silent ? reasons : context.warnings.empty() ? std::vector<std::string>{"no result"} : context.warnings;
-  const std::string outcome = status == ExitStatus::ok ? "complete" : interrupted ? "interrupted" : "partial";
-  context.report.put("stop_reasons", Json::array(told)).put("warnings", Json::array(context.warnings)).put("outcome", outcome);
-  file.attribute("/study", "stop_reasons", told);
-  file.attribute("/study", "warnings", context.warnings);
-  file.attribute("/study", "outcome", outcome);
-  file.flush();
-  if (!published(file)) fmt::print(stderr, "{}: no result yet, an older one is left as it was\n", file.path().string());
-  if (status == ExitStatus::numerical_failure && context.warnings.empty())
-    fmt::print(stderr, "error: the run is incomplete: {}\n", reasons.empty() ? "no result" : reasons.front());
-  return status;
+  return end_run(file, context, status, told, told.empty() ? "" : told.back());
 }
 
 }  // namespace whirl::studies

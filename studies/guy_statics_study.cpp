@@ -252,7 +252,7 @@ ExitStatus run(const Configuration& c, RunContext& context) {
     write_lumped(file, c, s);
   } catch (const std::exception& e) {
     context.warn(fmt::format("lumped masses: {}", e.what()));
-    reasons = {e.what()};
+    reasons = {context.warnings.back()};
     status = ExitStatus::numerical_failure;
   }
   return finish(file, context, status, reasons);

@@ -389,20 +389,19 @@ ExitStatus run(const Configuration& c, RunContext& context) {
   file.flush();
   const auto swept = run_sweeps(c, s, file, context);
   context.progress.clear();
-  bool whole = true;
+  std::vector<std::string> failures;
   for (const Run& r : runs)
     if (r.settled.kind == MotionKind::unsettled || r.settled.kind == MotionKind::failed) {
-      context.warn(fmt::format("omega = {:g}, {}: {}", r.omega, r.start, r.settled.why));
-      whole = false;
+      failures.push_back(fmt::format("omega = {:g}, {}: {}", r.omega, r.start, r.settled.why));
     }
   for (const auto& w : swept)
     if (!w.sweep.why.empty() && !interrupted) {
-      context.warn(fmt::format("sweep {} ended early: {}", w.way, w.sweep.why));
-      whole = false;
+      failures.push_back(fmt::format("sweep {} ended early: {}", w.way, w.sweep.why));
     }
+  for (const auto& f : failures) context.warn(f);
   report(context.report, runs, rows, swept, s);
   context.print(text_of(runs, rows, swept, s));
-  return finish(file, context, whole ? ExitStatus::ok : ExitStatus::numerical_failure);
+  return finish(file, context, failures.empty() ? ExitStatus::ok : ExitStatus::numerical_failure, failures);
 }
 
 }  // namespace
