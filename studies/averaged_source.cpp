@@ -7,6 +7,7 @@
 #include "continuation/deflation.hpp"
 #include "core/newton.hpp"
 #include "studies/common_keys.hpp"
+#include "studies/extremes.hpp"
 #include "studies/slow_flow_ansatz.hpp"
 
 namespace whirl::studies {
@@ -41,6 +42,15 @@ class AveragedSource : public EquilibriumSource {
   }
 
   std::vector<PointColumn> columns(const Problem&) const override { return harmonic_columns(forced_, ansatz_); }
+  std::vector<PointColumn> extremes(const Problem&) const override {
+    const Ansatz a = ansatz_;
+    const std::string what = a.frozen ? ", of the harmonics kept" : "";
+    return extreme_columns(forced_.coordinates, forced_.length_unit, what, [a](In u, int i) {
+      std::vector<std::complex<double>> z(static_cast<std::size_t>(a.highest()) + 1);
+      for (const int k : a.harmonics[static_cast<std::size_t>(i)]) z[static_cast<std::size_t>(k)] = amplitude(a, u.head(a.size()), i, k);
+      return z;
+    });
+  }
   std::vector<Observable> observables() const override {
     std::vector<Observable> all;
     for (int i = 0; i < ansatz_.coordinates(); ++i)

@@ -11,6 +11,7 @@
 #include <span>
 
 #include "studies/open_results.hpp"
+#include "studies/shown_columns.hpp"
 
 namespace whirl::studies {
 namespace {
@@ -191,11 +192,8 @@ void BranchOutput::report(Json& results, const std::vector<Branch>& branches) co
 
 std::string BranchOutput::text(const std::vector<Branch>& branches) const {
   std::string out;
-  // Amplitudes only: phases and derived numbers stand in the file.
   std::vector<const PointColumn*> shown;
-  const bool chosen = std::any_of(columns.begin(), columns.end(), [](const auto& c) { return c.shown; });
-  for (const auto& c : columns)
-    if ((c.shown || (!chosen && c.unit != "rad" && c.name.starts_with("q"))) && shown.size() < 5) shown.push_back(&c);
+  for (const std::size_t i : shown_columns(columns)) shown.push_back(&columns[i]);
   out += fmt::format("{:<7} {:<6} {:<10} {:>18}", "branch", "point", "subtype", fmt::format("{} [{}]", parameter, parameter_unit));
   for (const auto* c : shown) out += fmt::format(" {:>14}", fmt::format("{} [{}]", c->name, c->unit));
   out += fmt::format(" {:>9} {:>9}\n", "unstable", "residual");

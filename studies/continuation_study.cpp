@@ -8,6 +8,7 @@
 #include "continuation/deflation.hpp"
 #include "studies/common_keys.hpp"
 #include "studies/equilibrium_source.hpp"
+#include "studies/shown_columns.hpp"
 
 namespace whirl::studies {
 namespace {
@@ -117,6 +118,7 @@ ExitStatus run(const Configuration& c, RunContext& context) {
   output.parameter = s.parameter;
   output.parameter_unit = s.source->unit(s.parameter);
   output.columns = s.source->columns(*f);
+  append_unshown(output.columns, s.source->extremes(*f));
   ResultFile file(context.output);
   write_study(file, c);
   s.source->write(file, context);

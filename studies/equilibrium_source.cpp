@@ -15,6 +15,7 @@
 #include "studies/common_keys.hpp"
 #include "studies/equilibrium_diagnosis.hpp"
 #include "studies/equilibrium_model_input.hpp"
+#include "studies/extremes.hpp"
 #include "studies/slow_flow_ansatz.hpp"
 
 namespace whirl::studies {
@@ -72,6 +73,9 @@ class StaySource : public EquilibriumSource {
     static constexpr const char* state[] = {"u1", "v1", "u2", "v2"};
     for (int i = 0; i < 4; ++i) all.push_back({state[i], "m", "Cartesian van der Pol coordinate", [i](In u) { return u[i]; }});
     return all;
+  }
+  std::vector<PointColumn> extremes(const Problem& f) const override {
+    return extreme_columns(dynamic_cast<const SuperharmonicFlow&>(f), options_.order);
   }
   std::vector<Observable> observables() const override {
     return {{.name = amplitude(1), .form = QuadraticForm::square_sum(4, {0, 1})},

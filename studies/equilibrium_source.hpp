@@ -41,6 +41,8 @@ class EquilibriumSource {
   /// Points near solutions, in the order in which they are to be tried; f has one free parameter.
   virtual std::vector<Start> starts(const Problem& f, const std::string& lens, double lower, double upper) const = 0;
   virtual void write(ResultFile& file, RunContext& context) const = 0;
+  /// Further columns where the unknowns are amplitudes: extremes of the coordinates over a period.
+  virtual std::vector<PointColumn> extremes(const Problem&) const { return {}; }
   /// Coordinates of which values a period apart are one, with the window of one period that walks keep to.
   virtual std::vector<continuation::CoordinateBound> angles() const { return {}; }
   /// Why the solution u of f is not isolated, one line with what to do about it; "" if it is, or if the source cannot tell.

@@ -2,9 +2,8 @@
 /// What a person reads of a periodic motion: amplitudes per coordinate and harmonic, peak displacement; motions over time; and how well an
 /// integration agrees.
 
-#include <algorithm>
-
 #include "studies/branch_output.hpp"
+#include "studies/extremes.hpp"
 #include "studies/orbit_branches.hpp"
 
 namespace whirl::studies {
@@ -14,10 +13,6 @@ namespace whirl::studies {
 BranchOutput orbit_output(const OrbitBranches& orbits, const std::string& parameter, int harmonics);
 
 /// Largest and least q_i over the period.
-struct Extremes {
-  double highest, lowest;
-  double largest() const { return std::max(highest, -lowest); }  ///< of |q_i|
-};
 Extremes extremes(const models::HarmonicBalance& hb, In u, int coordinate);
 
 /// Largest |q_i| over the period.

@@ -10,7 +10,9 @@
 #include "core/parallel.hpp"
 #include "studies/branch_output.hpp"
 #include "studies/common_keys.hpp"
+#include "studies/extremes.hpp"
 #include "studies/modulation_output.hpp"
+#include "studies/shown_columns.hpp"
 #include "studies/slow_flow_ansatz.hpp"
 #include "studies/slow_flow_verification.hpp"
 
@@ -133,6 +135,14 @@ BranchOutput output_of(const Setup& s) {
   out.parameter_unit = s.forced.lens_units.front();
   const Ansatz& a = s.averaged.ansatz;
   out.columns = harmonic_columns(s.forced, a);
+  append_unshown(out.columns, extreme_columns(s.forced.coordinates, s.forced.length_unit, a.frozen ? ", the frozen linear response included" : "",
+                                              [&s](In u, int i) {
+                                                const Vector q = s.averaged.balance_state(u);
+                                                const int width = 2 * s.averaged.balance_harmonics + 1;
+                                                std::vector<std::complex<double>> z{q[i * width]};
+                                                for (int k = 1; 2 * k < width; ++k) z.emplace_back(q[i * width + 2 * k - 1], -q[i * width + 2 * k]);
+                                                return z;
+                                              }));
   out.columns.push_back({"floquet_modulus", "-",
                          fmt::format("largest modulus of the Floquet multipliers of this motion over {} excitation periods; above 1: unstable", a.nu),
                          floquet_modulus(s)});

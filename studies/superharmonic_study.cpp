@@ -10,7 +10,9 @@
 #include "models/closed_forms.hpp"
 #include "studies/branch_output.hpp"
 #include "studies/common_keys.hpp"
+#include "studies/extremes.hpp"
 #include "studies/modulation_output.hpp"
+#include "studies/shown_columns.hpp"
 #include "studies/verification.hpp"
 
 namespace whirl::studies {
@@ -100,6 +102,7 @@ BranchOutput output_of(const SuperharmonicFlow& flow, const Setup& s) {
   add(fmt::format("q1_h{}_phase", n), "rad", "Psi1", [](const Superharmonic& o) { return o.Psi1; });
   add(fmt::format("q2_h{}_phase", n), "rad", "Psi2", [](const Superharmonic& o) { return o.Psi2; });
   add("q2_h1_phase", "rad", "Psi0", [](const Superharmonic& o) { return o.Psi0; });
+  append_unshown(out.columns, extreme_columns(flow, n));
   static constexpr const char* state[] = {"u1", "v1", "u2", "v2"};
   for (int i = 0; i < 4; ++i) out.columns.push_back({state[i], "m", "Cartesian van der Pol coordinate", [i](In u) { return u[i]; }});
   if (s.parameter == "omega") {

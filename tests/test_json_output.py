@@ -369,9 +369,9 @@ def foreign_files_stay(folder):
     check(whirl(folder, "run", "my.toml", "-q", "-o", "empty.h5").returncode == 0, "an empty file counts as new")
 
 
-TESTS = [every_kind_prints_strict_json, tables_go_to_standard_output, names_of_any_letters, frequency_means_one_thing, extremes_with_their_sign,
+TESTS = [every_kind_prints_strict_json, tables_go_to_standard_output, names_of_any_letters, frequency_means_one_thing, extremes_with_their_sign, averaged_extremes,
          a_hanging_cable_is_told_everywhere, motion_out_of_plane_alone_is_told, frequencies_beyond_the_200th, stiffness_at_frequencies, groups_of_guys,
-         what_does_not_settle_is_told, command_line, foreign_files_stay]
+         what_does_not_settle_is_told, a_partial_run_tells_why, command_line, foreign_files_stay]
 
 if __name__ == "__main__":
     failed = 0
