@@ -7,7 +7,6 @@
 
 #include "continuation/codimension_two.hpp"
 #include "continuation/period_doubling.hpp"
-#include "core/newton.hpp"
 
 namespace whirl::continuation {
 namespace {
@@ -62,31 +61,30 @@ Vector Follower::scales() const {
   return units;
 }
 
-// Onto the curve: at the point's own p2 if that can be; where p2 stands still along the curve, by the shortest way, p2 and all.
+// Onto the curve by the shortest way, p2 and all. With p2 held there may be no solution near, or one off the curve: where p2 stands still along it,
+// and where a pitchfork dissolves beside it.
 bool Follower::settle_start() {
-  constexpr double near = 1e-4;  // in units: it is a point of the curve but for rounding, or 1e-6 of it
+  constexpr double near = 1e-4, rounding = 1e-13, stalled = 1e-10;  // in units: it is a point of the curve but for 1e-6 of it
+  constexpr int most_steps = 20;
   const Vector units = scales();
-  const NewtonResult at = newton(curve_.system(), start_, {.tolerance = 1e-12, .max_iterations = 20});
-  if (at.settled() && (at.x - start_).cwiseQuotient(units).norm() < near) {
-    start_ = at.x;
-    return true;
-  }
   const int m = curve_.system().size();
   Vector y = start_, r(m);
   Matrix j(m, m + 1);
   double previous = std::numeric_limits<double>::infinity();
-  for (int i = 0; i < 20; ++i) {
+  for (int i = 0; i < most_steps; ++i) {
     curve_.system().linearise(y, r, j);
     if (!r.allFinite() || !j.allFinite()) return false;
     const Vector step = Matrix(j * units.asDiagonal()).completeOrthogonalDecomposition().solve(r);
     y -= units.cwiseProduct(step);
     const double size = step.norm();
-    if (size < 1e-13 || (size < 1e-10 && size > 0.5 * previous)) break;
+    if (!std::isfinite(size) || !((y - start_).cwiseQuotient(units).norm() < near)) return false;
+    if (size < rounding || (size < stalled && size > 0.5 * previous)) {
+      start_ = y;
+      return true;
+    }
     previous = size;
   }
-  if (!y.allFinite() || !((y - start_).cwiseQuotient(units).norm() < near)) return false;
-  start_ = y;
-  return true;
+  return false;
 }
 
 // Of the curve at its start, p2 increasing: the kernel of the system's Jacobian.
