@@ -57,6 +57,7 @@ class Search {
   std::vector<double> largest_odd_;                            // on the curve, for each reflection
   double farthest_from_branch_points_ = 0.0;                   // of a fold curve
   double largest_state_ = 0.0;                                 // on the curve
+  double largest_unknown_ = 0.0;                               // the same with what the system adds to the state
   std::vector<std::pair<CodimensionTwo, double>> candidates_;  // of a fold curve, with the distance from branch points
   std::vector<CodimensionTwo> found_;
 };
@@ -71,9 +72,9 @@ Station Search::station(int i) {
   return s;
 }
 
-// Both ends of a step in the metric of that step.
+// Both ends of a step in the metric of the curve: that of the step alone would vanish where the state does.
 void Search::measure(const Station& a, const Station& b, Sample& from, Sample& to) {
-  on_.set_scales(std::max(1e-12, a.at.u.head(curve_.system().size()).norm()), options_.range2[1] - options_.range2[0]);
+  on_.set_scales(largest_unknown_ > 0.0 ? largest_unknown_ : 1.0, options_.range2[1] - options_.range2[0]);
   from = a.at;
   to = b.at;
   from.tangent /= on_.length(from.tangent);
@@ -109,7 +110,10 @@ std::vector<CodimensionTwo> Search::run(const std::function<void(int)>& each) {
       for (const int k : odd_coordinates(f, r)) largest = std::max(largest, std::abs(curve_.base(walked_.u(i))[k]));
     largest_odd_.push_back(largest);
   }
-  for (int i = 0; i < walked_.points(); ++i) largest_state_ = std::max(largest_state_, curve_.base(walked_.u(i)).head(f.size()).norm());
+  for (int i = 0; i < walked_.points(); ++i) {
+    largest_state_ = std::max(largest_state_, curve_.base(walked_.u(i)).head(f.size()).norm());
+    largest_unknown_ = std::max(largest_unknown_, walked_.u(i).head(curve_.system().size()).norm());
+  }
   Station before, last, now;
   for (int i = 0; i < walked_.points(); ++i) {
     curve_.update_borders(walked_.u(i));
