@@ -154,8 +154,9 @@ bool EventFinder::locate_multiple(const Sample& a, const Sample& b, int depth) {
   if (curve_.orbit() || f.derivatives() < 2) return false;
   const Vector chord = b.u - a.u;
   const double span = curve_.length(chord);
-  auto point = multiple_point_near(f, a.u + secant(a, b, crossing({EventType::branch_point, 0}, a, b)) * chord);
-  if (!point && a.signature.forward != b.signature.forward) point = multiple_point_near(f, a.u + secant(a, b, {-1, 0}) * chord);  // where it turns
+  const auto near = [&](double part) { return multiple_point_near(f, a.u + part * chord, curve_.x_scale(), curve_.p_scale()); };
+  auto point = near(secant(a, b, crossing({EventType::branch_point, 0}, a, b)));
+  if (!point && a.signature.forward != b.signature.forward) point = near(secant(a, b, {-1, 0}));  // where it turns
   if (!point) return false;
   const double part = fraction(curve_, a, b, point->u);
   constexpr double off_chord = 0.1, close = 1e-9;  // parts of the step; of the metric

@@ -4,6 +4,8 @@
 #include <Eigen/SVD>
 #include <algorithm>
 
+#include "core/problem_in_units.hpp"
+
 namespace whirl::continuation {
 namespace {
 
@@ -66,7 +68,10 @@ double usual_jacobian(const Problem& f, In u) {
   return std::max(around.norm(), sizes[sizes.size() / 2]);
 }
 
-std::optional<MultiplePoint> multiple_point_near(const Problem& f, In u) {
+namespace {
+
+// x and p of order one.
+std::optional<MultiplePoint> multiple_point_in_units(const Problem& f, const Vector& u) {
   const int n = f.size();
   const double usual = usual_jacobian(f, u);
   if (!(usual > 0.0) || n < 2) return std::nullopt;
@@ -102,6 +107,17 @@ std::optional<MultiplePoint> multiple_point_near(const Problem& f, In u) {
     return point;
   }
   return std::nullopt;
+}
+
+}  // namespace
+
+std::optional<MultiplePoint> multiple_point_near(const Problem& f, In u, double x_scale, double p_scale) {
+  Vector units = Vector::Constant(f.size() + 1, x_scale);
+  units[f.size()] = p_scale;
+  const ProblemInUnits scaled(f, units, Vector::Ones(f.size()));
+  auto point = multiple_point_in_units(scaled, u.cwiseQuotient(units));
+  if (point) point->u.array() *= units.array();
+  return point;
 }
 
 }  // namespace whirl::continuation

@@ -22,10 +22,11 @@ struct MultiplePoint {
   double residual;  ///< largest entry of r and G
 };
 
-/// Nothing if fewer than two eigenvalues are near zero at u, or if they do not vanish at one point near it. `f` has second derivatives.
-[[nodiscard]] std::optional<MultiplePoint> multiple_point_near(const Problem& f, In u);
+/// Nothing if fewer than two eigenvalues are near zero at u, or if they do not vanish at one point near it. `f` has second derivatives; x_scale and
+/// p_scale are the sizes of x and p that it is solved in.
+[[nodiscard]] std::optional<MultiplePoint> multiple_point_near(const Problem& f, In u, double x_scale = 1.0, double p_scale = 1.0);
 
-/// Usual size of [r_x r_p] about u, where at u itself all of it may vanish; 0 if none can be computed.
+/// Usual size of [r_x r_p] a hundredth about u, where at u itself all of it may vanish; 0 if none can be computed. x and p are of order one.
 [[nodiscard]] double usual_jacobian(const Problem& f, In u);
 
 }  // namespace whirl::continuation

@@ -34,16 +34,36 @@ class CurvedPart {
   double size(int i, double s) {
     int row = i;
     if (!(sizes_(i, i) > 0.0) && !(sizes_.col(i).maxCoeff(&row) > 0.0)) return 0.0;
-    const bool curved = is_curved(i, row, s);
+    return search(s, [&](double at) { return is_curved(i, row, at); });
+  }
+  // The same along a direction of all coordinates, where products of two make up what is not linear.
+  double size_of_products(double s) {
+    Vector direction(f_.size());
+    for (int i = 0; i < f_.size(); ++i) direction[i] = 1.0 + 0.3 * std::cos(1.7 * i);  // no symmetry of a model is likely to be orthogonal to it
+    const Vector linear = sizes_ * direction, slope = j_.leftCols(f_.size()) * direction;
+    if (!(linear.maxCoeff() > 0.0)) return 0.0;
+    return search(s, [&](double at) { return is_curved_along(direction, linear, slope, at); });
+  }
+
+ private:
+  template <class Curved>
+  double search(double s, const Curved& is_curved_at) {
+    const bool curved = is_curved_at(s);
     for (int k = 0; k < most_decades; ++k) {
       const double next = curved ? s / decade : s * decade;
-      if (is_curved(i, row, next) != curved) return !curved || s > still_seen * u_.head(f_.size()).lpNorm<Eigen::Infinity>() ? s : 0.0;
+      if (is_curved_at(next) != curved) return !curved || s > still_seen * u_.head(f_.size()).lpNorm<Eigen::Infinity>() ? s : 0.0;
       s = next;
     }
     return 0.0;
   }
-
- private:
+  // In some row.
+  bool is_curved_along(const Vector& direction, const Vector& linear, const Vector& slope, double s) {
+    Vector at = u_;
+    at.head(f_.size()) += s * direction;
+    f_.residual(at, r_);
+    const Vector rest = (r_ - r0_ - s * slope).cwiseAbs();
+    return !rest.allFinite() || ((rest - s * linear).array() > 0.0 && linear.array() > 0.0).any();
+  }
   // Where r is not finite it is.
   bool is_curved(int i, int row, double s) {
     Vector at = u_;
@@ -82,6 +102,7 @@ double natural_size(const Problem& f, In u, double lower, double upper) {
     const double s = part.size(i, least > 0.0 ? least : state > 0.0 ? state : 1.0);
     if (s > 0.0) least = least > 0.0 ? std::min(least, s) : s;
   }
+  if (!(least > 0.0)) least = part.size_of_products(state > 0.0 ? state : 1.0);
   return least > 0.0 ? least : 1.0;
 }
 

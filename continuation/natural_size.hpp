@@ -13,7 +13,7 @@ namespace whirl::continuation {
 /// At u = (x, p), the last parameter in [lower, upper], of each coordinate; 1 where the problem is linear along it, or not finite nearby.
 Vector natural_sizes(const Problem& f, In u, double lower, double upper);
 
-/// The least of some coordinates; 1 where the problem is linear.
+/// The least of some coordinates or, where it is linear along each of them, along a direction of them all; 1 where the problem is linear.
 double natural_size(const Problem& f, In u, double lower, double upper);
 
 }  // namespace whirl::continuation

@@ -6,10 +6,11 @@
 #include <algorithm>
 #include <map>
 
+#include "continuation/natural_size.hpp"
 #include "continuation/normal_form.hpp"
 #include "continuation/null_vectors.hpp"
 #include "continuation/switching.hpp"
-#include "core/newton.hpp"
+#include "core/problem_in_units.hpp"
 
 namespace whirl::continuation {
 
@@ -36,7 +37,20 @@ Vector Network::inside(Vector u) const {
   return u;
 }
 
+// Newton with x in units of its size.
+NewtonResult Network::solve(const Vector& start, const NewtonOptions& options) const {
+  return newton_in_units(problem_, start, Vector::Constant(problem_.size(), unit_at(start)), options);
+}
+
+// The size of x near u: of the state or, at rest, the problem's own.
+double Network::unit_at(const Vector& u) const {
+  const double known = u.head(problem_.size()).norm();
+  if (!problem_.is_flow()) return known > 0.0 ? known : 1.0;
+  return std::max(known, natural_size(problem_, u, options_.walk.lower, options_.walk.upper));
+}
+
 std::vector<std::pair<int, Vector>> Network::solutions_at(double p) const {
+  constexpr double same_digits = 1e-9;
   const int n = problem_.size();
   p = inside(Vector::Constant(n + 1, p))[n];
   std::vector<std::pair<int, Vector>> all;
@@ -60,11 +74,12 @@ std::vector<std::pair<int, Vector>> Network::solutions_at(double p) const {
       if ((p0 - p) * (p1 - p) > 0.0 || p0 == p1) continue;
       Vector guess = knots[i].u + (p - p0) / (p1 - p0) * (knots[i + 1].u - knots[i].u);
       guess[n] = p;
-      const NewtonResult r = newton(problem_, guess, {.tolerance = 1e-11, .max_iterations = 15});
-      const double chord = (knots[i + 1].u - knots[i].u).norm();
-      if (!r.ok() || (r.x - guess).norm() > chord + 1e-9) continue;
-      const bool repeated = std::any_of(all.begin() + static_cast<std::ptrdiff_t>(first), all.end(),
-                                        [&](const auto& known) { return (known.second - r.x).norm() < 1e-9 * (1.0 + r.x.norm()); });
+      const NewtonResult r = solve(guess, {.tolerance = 1e-11, .max_iterations = 15});
+      const double chord = std::hypot((knots[i + 1].u - knots[i].u).head(n).norm(), size_ * (p1 - p0) / (options_.walk.upper - options_.walk.lower));
+      if (!r.ok() || (r.x - guess).head(n).norm() > chord + same_digits * size_) continue;
+      const bool repeated = std::any_of(all.begin() + static_cast<std::ptrdiff_t>(first), all.end(), [&](const auto& known) {
+        return (known.second - r.x).head(n).norm() <= same_digits * std::max(size_, r.x.head(n).norm());
+      });
       if (!repeated) all.emplace_back(b, r.x);
     }
   }
@@ -106,7 +121,7 @@ Vector Network::regular_start(const Vector& u0) const {
   const int n = problem_.size();
   const NewtonOptions exact{.tolerance = 1e-12, .max_iterations = 30};
   Matrix j(n, n + 1);
-  const NewtonResult polished = newton(problem_, u0, exact);
+  const NewtonResult polished = solve(u0, exact);
   const Vector at = polished.ok() ? polished.x : u0;
   double usual = 0.0;  // size of r_x around
   for (const double part : {-1e-2, 1e-2}) {
@@ -134,7 +149,7 @@ Vector Network::regular_start(const Vector& u0) const {
     Vector beside = at;
     beside[n] += part * (options_.walk.upper - options_.walk.lower);
     if (beside[n] < options_.walk.lower || beside[n] > options_.walk.upper) continue;
-    const NewtonResult there = newton(problem_, beside, exact);
+    const NewtonResult there = solve(beside, exact);
     if (there.ok() && better(there.x)) return there.x;
   }
   problem_.jacobian(at, j);
@@ -142,9 +157,11 @@ Vector Network::regular_start(const Vector& u0) const {
   null_vectors(j.leftCols(n), v, w);
   normal.head(n) = v;
   Curve curve(problem_, make_blocks(problem_, {}), options_.walk.corrector);
+  const double size = unit_at(at);
+  curve.set_scales(size, options_.walk.upper - options_.walk.lower);
   for (const double part : {1e-3, -1e-3, 1e-2, -1e-2}) {
     Sample there;
-    const Vector beside = at + part * (1.0 + at.head(n).norm()) * normal;
+    const Vector beside = at + part * size * normal;
     if (!curve.sample(beside, normal, there) || there.u[n] < options_.walk.lower || there.u[n] > options_.walk.upper) continue;
     if (better(there.u)) return there.u;
   }
@@ -170,14 +187,15 @@ Network::Seed Network::walk_seed(const Vector& u0, const std::string& origin, in
   if (stopped_ || full()) return Seed::known;
   const NewtonOptions exact{.tolerance = 1e-12, .max_iterations = 30};
   Vector start = inside(u0);
-  if (const NewtonResult polished = newton(problem_, start, exact); polished.ok()) start = polished.x;
+  if (const NewtonResult polished = solve(start, exact); polished.ok()) start = polished.x;
   if (contains(start)) return Seed::known;
-  const NewtonResult polished = newton(problem_, inside(regular_start(start)), exact);
+  const NewtonResult polished = solve(inside(regular_start(start)), exact);
   if (!polished.ok()) return Seed::no_solution;
   start = polished.x;
+  const double unit = unit_at(start);
   for (int r = 0; r < static_cast<int>(problem_.reflections().size()); ++r) {  // symmetric up to rounding is symmetric
     const Indices odd = odd_coordinates(problem_, r);
-    if (start(odd).lpNorm<Eigen::Infinity>() < 1e-11 * (1.0 + start.head(problem_.size()).norm())) start(odd).setZero();
+    if (start(odd).lpNorm<Eigen::Infinity>() < 1e-11 * unit) start(odd).setZero();
   }
   if (contains(start)) return Seed::known;
   Walker walker(problem_, options_.walk);
@@ -265,7 +283,7 @@ bool Network::is_solution(const Branch& branch) const {
   const int n = problem_.size(), last = branch.points() - 1;
   for (const int part : {1, 2, 3}) {
     const Vector u = branch.u(last * part / 4);
-    const NewtonResult there = newton(problem_, u, {.tolerance = 1e-11, .max_iterations = 5});
+    const NewtonResult there = solve(u, {.tolerance = 1e-11, .max_iterations = 5});
     if (there.ok() && (there.x - u).head(n).norm() > options_.same * size_) return false;
   }
   return true;
@@ -273,7 +291,7 @@ bool Network::is_solution(const Branch& branch) const {
 
 const std::vector<SignedPermutation>& Network::group() {
   const auto& w = options_.walk;
-  if (!group_) group_ = symmetries(problem_, {.size = size_ > 0.0 ? size_ : 1.0, .lower = w.lower, .upper = w.upper});
+  if (!group_) group_ = symmetries(problem_, {.size = size_ > 0.0 ? size_ : unit_at(branches_.front().u(0)), .lower = w.lower, .upper = w.upper});
   return *group_;
 }
 
@@ -330,7 +348,8 @@ bool Network::on_as_symmetric_branch(In u) const {
 void Network::leave(const Junction& junction) {
   SpecialPoint point = junction.point;
   const auto& w = options_.walk;
-  const Departures found = departures(problem_, point, {.range = w.upper - w.lower, .size = size_ > 0.0 ? size_ : 1.0, .symmetries = group()});
+  const Departures found =
+      departures(problem_, point, {.range = w.upper - w.lower, .size = size_ > 0.0 ? size_ : unit_at(point.u), .symmetries = group()});
   if (!found.found_all && found.starts > 0)
     note(
         fmt::format("at {} {} eigenvalues are zero at once: {} branches, and their images, were found by a search from {} starts, which "

@@ -13,6 +13,7 @@
 #include "continuation/membership.hpp"
 #include "continuation/symmetries.hpp"
 #include "continuation/walker.hpp"
+#include "core/newton.hpp"
 
 namespace whirl::continuation {
 
@@ -81,6 +82,8 @@ class Network {
   Seed walk_seed(const Vector& u0, const std::string& origin, int generation);
   void follow_landing(const Junction& junction);
   void leave(const Junction& junction);
+  NewtonResult solve(const Vector& start, const NewtonOptions& options) const;
+  double unit_at(const Vector& u) const;
   Vector regular_start(const Vector& u0) const;
   Vector inside(Vector u) const;
   bool on_as_symmetric_branch(In u) const;

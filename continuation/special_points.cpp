@@ -62,11 +62,11 @@ std::unique_ptr<AugmentedSystem> torus_system(const Curve& curve, int group, con
 }
 
 // Do several eigenvalues vanish at this very point?
-bool is_multiple(const Problem& f, const Vector& u) {
+bool is_multiple(const Curve& curve, const Vector& u) {
   constexpr double same = 1e-7;
-  if (f.size() > always_asked) return false;
-  const auto point = multiple_point_near(f, u);
-  return point && (point->u - u).norm() <= same * (1.0 + u.norm());
+  if (curve.problem().size() > always_asked) return false;
+  const auto point = multiple_point_near(curve.problem(), u, curve.x_scale(), curve.p_scale());
+  return point && curve.length(point->u - u) <= same * (1.0 + curve.length(u));
 }
 
 }  // namespace
@@ -114,7 +114,7 @@ bool special_point_near(const Curve& curve, const EventKind& kind, const Sample&
   if (kind.type == EventType::hopf && !(static_cast<HopfSystem&>(*system).kappa(r.x) > 0.0)) return false;
   if (kind.type == EventType::torus && !(static_cast<TorusSystem&>(*system).kappa(r.x) > 0.0)) return false;
   if (kind.type == EventType::branch_point && kind.block == 0 && !persists(r.x, units)) return false;
-  if (kind.type == EventType::branch_point && kind.block == 0 && is_multiple(f, system->base_point(r.x))) return false;
+  if (kind.type == EventType::branch_point && kind.block == 0 && is_multiple(curve, system->base_point(r.x))) return false;
   out = {};
   out.type = kind.type;
   out.block = kind.block;
@@ -123,7 +123,7 @@ bool special_point_near(const Curve& curve, const EventKind& kind, const Sample&
   out.residual = r.residual;
   out.subtype = kind.type == EventType::branch_point ? blocks.subtype[static_cast<std::size_t>(kind.block)] : "";
   if (auto* singular = dynamic_cast<SingularSystem*>(system.get())) out.null_vector = singular->null_vector(r.x);
-  if (kind.type == EventType::branch_point && kind.block == 0) name_branch_point(f, out);
+  if (kind.type == EventType::branch_point && kind.block == 0) name_branch_point(f, out, {.range = curve.p_scale(), .size = curve.x_scale()});
   if (kind.type == EventType::hopf) out.frequency = std::sqrt(static_cast<HopfSystem&>(*system).kappa(r.x));
   if (kind.type == EventType::torus) {
     const auto& torus = static_cast<TorusSystem&>(*system);

@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "continuation/multiple_point.hpp"
+#include "core/problem_in_units.hpp"
 
 namespace whirl::continuation {
 namespace {
@@ -221,9 +222,30 @@ const char* name_of(const std::vector<Vector>& directions) {
   return upright(directions[0]) || upright(directions[1]) ? "PF" : "TC";
 }
 
-}  // namespace
+// The problem and its point with x and p of order one, in which nothing hangs on the units of either.
+class InUnits {
+ public:
+  InUnits(const Problem& f, const SpecialPoint& point, const DepartureOptions& o)
+      : scaled(f, units_of(f, o), Vector::Ones(f.size())), at(point), options(o) {
+    at.u = point.u.cwiseQuotient(scaled.units());
+    if (point.tangent.size() > 0) at.tangent = point.tangent.cwiseQuotient(scaled.units());
+    options.range = options.size = 1.0;
+  }
+  Vector outwards(const Vector& direction) const { return direction.cwiseProduct(scaled.units()).normalized(); }
 
-Departures departures(const Problem& f, SpecialPoint& point, const DepartureOptions& options) {
+  ProblemInUnits scaled;
+  SpecialPoint at;
+  DepartureOptions options;
+
+ private:
+  static Vector units_of(const Problem& f, const DepartureOptions& o) {
+    Vector units = Vector::Constant(f.size() + 1, o.size);
+    units[f.size()] = o.range;
+    return units;
+  }
+};
+
+Departures departures_in_units(const Problem& f, SpecialPoint& point, const DepartureOptions& options) {
   const int n = f.size();
   const Matrix kernel = f.is_flow() && n >= 2 ? kernel_at(f, point.u) : Matrix();
   Departures found;
@@ -244,9 +266,20 @@ Departures departures(const Problem& f, SpecialPoint& point, const DepartureOpti
   return found;
 }
 
-void name_branch_point(const Problem& f, SpecialPoint& point) {
+}  // namespace
+
+Departures departures(const Problem& f, SpecialPoint& point, const DepartureOptions& options) {
+  InUnits units(f, point, options);
+  Departures found = departures_in_units(units.scaled, units.at, units.options);
+  for (Departure& d : found.branches) d.direction = units.outwards(d.direction);
+  point.subtype = units.at.subtype;
+  return found;
+}
+
+void name_branch_point(const Problem& f, SpecialPoint& point, const DepartureOptions& options) {
   if (!point.subtype.empty()) return;
-  if (const auto directions = crossing_directions(f, point); !directions.empty()) point.subtype = name_of(directions);
+  const InUnits units(f, point, options);
+  if (const auto directions = crossing_directions(units.scaled, units.at); !directions.empty()) point.subtype = name_of(directions);
 }
 
 }  // namespace whirl::continuation

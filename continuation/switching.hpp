@@ -32,6 +32,6 @@ struct DepartureOptions {
 Departures departures(const Problem& f, SpecialPoint& point, const DepartureOptions& options);
 
 /// Only that subtype, of a simple branch point without symmetry.
-void name_branch_point(const Problem& f, SpecialPoint& point);
+void name_branch_point(const Problem& f, SpecialPoint& point, const DepartureOptions& options = {});
 
 }  // namespace whirl::continuation

@@ -15,6 +15,7 @@ ProblemInUnits::ProblemInUnits(const Problem& f, Vector units, Vector rows)
     throw std::invalid_argument("units must be positive, one for each unknown, parameter and equation");
   for (const auto& r : f.reflections()) add_reflection(r);
   name_parameters(f.parameter_names());
+  offer_derivatives(f.derivatives());
 }
 
 void ProblemInUnits::do_residual(In y, Out r) const {
@@ -34,6 +35,18 @@ void ProblemInUnits::do_linearise(In y, Out r, MatrixOut j) const {
   f_.linearise(u_, r, j);
   r.array() /= rows_.array();
   for (Eigen::Index c = 0; c < j.cols(); ++c) j.col(c).array() *= units_[c] / rows_.array();
+}
+
+void ProblemInUnits::do_second(In y, In v, MatrixOut h) const {
+  u_ = y.cwiseProduct(units_);
+  f_.second(u_, v.cwiseProduct(units_), h);
+  for (Eigen::Index c = 0; c < h.cols(); ++c) h.col(c).array() *= units_[c] / rows_.array();
+}
+
+void ProblemInUnits::do_third(In y, In a, In b, In c, Out t) const {
+  u_ = y.cwiseProduct(units_);
+  f_.third(u_, a.cwiseProduct(units_), b.cwiseProduct(units_), c.cwiseProduct(units_), t);
+  t.array() /= rows_.array();
 }
 
 Vector row_sizes(const Problem& f, In u, const Vector& units) {

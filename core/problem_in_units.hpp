@@ -20,6 +20,8 @@ class ProblemInUnits : public Problem {
   void do_residual(In y, Out r) const override;
   void do_jacobian(In y, MatrixOut j) const override;
   void do_linearise(In y, Out r, MatrixOut j) const override;
+  void do_second(In y, In v, MatrixOut h) const override;
+  void do_third(In y, In a, In b, In c, Out t) const override;
   const Problem& f_;
   Vector units_, rows_;
   mutable Vector u_;
