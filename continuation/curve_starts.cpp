@@ -7,6 +7,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "continuation/chart_units.hpp"
+#include "continuation/exchanged_problem.hpp"
 #include "continuation/special_curve.hpp"
 #include "continuation/switching.hpp"
 
@@ -17,6 +19,7 @@ constexpr double eigenvalue_zero = 1e-5;  // relative to the largest: located to
 
 constexpr double least_apart = 1e-2;  // part of the slope of w'r_p times the distance: a curve of branch points satisfies the system of folds too
 
+// f and its options in units of its own, in which x and the parameters are of order one (chart_units.hpp).
 class Meeting {
  public:
   Meeting(const Problem& f, const CodimensionTwo& point, const TwoParameterOptions& options)
@@ -29,6 +32,7 @@ class Meeting {
 
   void add_folds(int broken_block);
   void add_singular(int besides_block);
+  void add_unmoved_by_first();
   void add_hopf_pairs(int own_block, double own_frequency);
   void add_double_zero_hopf();
   std::vector<CurveStart> starts;
@@ -52,8 +56,7 @@ class Meeting {
 Vector Meeting::units(const SpecialCurve& curve, const Vector& y) const {
   const auto states = curve.states();
   Vector all = y.cwiseAbs();
-  const double x = y.head(states).norm();
-  all.head(states).setConstant(x > 0.0 ? x : 1.0);
+  all.head(states).setOnes();
   all[states] = options_.range1[1] - options_.range1[0];
   for (Eigen::Index i = states + 1; i < y.size(); ++i)
     if (all[i] < 1e-6 * size_ * size_) all[i] = std::max(size_ * size_, 1e-300);  // a squared frequency near zero
@@ -100,9 +103,8 @@ void Meeting::add_folds(int broken_block) {
   constexpr double off = 1e-7;
   const Indices& block = blocks_.indices[static_cast<std::size_t>(broken_block)];
   const Vector v = Eigen::JacobiSVD<Matrix>(Matrix(j_(block, block)), Eigen::ComputeFullV).matrixV().rightCols(1);
-  const double x = u_.head(n_).norm();
   Vector from = u_;
-  for (std::size_t i = 0; i < block.size(); ++i) from[block[i]] += off * (x > 0.0 ? x : 1.0) * v[static_cast<Eigen::Index>(i)];
+  for (std::size_t i = 0; i < block.size(); ++i) from[block[i]] += off * v[static_cast<Eigen::Index>(i)];
   add(EventType::fold, 0, 0.0, from);
 }
 
@@ -120,7 +122,7 @@ void Meeting::add(EventType type, int block, double frequency, const Vector& fro
     const std::size_t before = starts.size();
     const std::vector<Vector> met = on_circle(curve, y0, radius);
     for (const Vector& y : met) {
-      if (curve.dissolved(y) || curve.kappa(y) <= 0.0) continue;
+      if (curve.dissolved(y) || curve.kappa(y) <= 0.0 || curve.unmoved_by_first(y)) continue;
       if (type == EventType::fold && curve.apart_from_branch_points(y) < least_apart * radius * curve.branch_point_slope(y)) continue;
       const Vector u = curve.base(y);
       CurveStart start{point, u[n_ + 1]};
@@ -138,6 +140,22 @@ void Meeting::add(EventType type, int block, double frequency, const Vector& fro
   }
 }
 
+// The same where the second parameter alone moves the critical eigenvalue.
+void Meeting::add_unmoved_by_first() {
+  const ExchangedProblem other(f_);
+  TwoParameterOptions options = options_;
+  std::swap(options.range1, options.range2);
+  CodimensionTwo point;
+  point.u = ExchangedProblem::exchanged(u_);
+  Meeting meeting(other, point, options);
+  meeting.add(EventType::branch_point, 0, 0.0);
+  for (CurveStart& start : meeting.starts) {
+    std::swap(start.point.u[n_], start.p2);
+    start.point.tangent.resize(0);
+    starts.push_back(std::move(start));
+  }
+}
+
 // Where r_x is singular in a block: branch points if they persist, else folds.
 void Meeting::add_singular(int besides_block) {
   for (int k = 0; k < static_cast<int>(blocks_.indices.size()); ++k) {
@@ -145,6 +163,7 @@ void Meeting::add_singular(int besides_block) {
     if (k == besides_block || e.size() == 0 || e.cwiseAbs().minCoeff() > eigenvalue_zero * size_) continue;
     const std::size_t before = starts.size();
     add(EventType::branch_point, k, 0.0);
+    if (k == 0 && starts.size() == before) add_unmoved_by_first();
     if (k == 0 && starts.size() == before) add_folds(0);
   }
 }
@@ -180,17 +199,19 @@ std::vector<CurveStart> curves_through(const Problem& f, const DefiningCurve& cu
                                        const TwoParameterOptions& options) {
   const bool on_hopf = curve.type == EventType::hopf, of_branch_points = curve.type == EventType::branch_point;
   if (!f.is_flow() || !(on_hopf || of_branch_points || curve.type == EventType::fold)) return {};
-  Meeting meeting(f, point, options);
+  const ChartUnits units(f, point.u, 0.0, options);
+  Meeting meeting(units.problem(), units.inwards(point), units.options());
   const std::string& type = point.type;
   if (type == "BT" && !on_hopf) meeting.add_double_zero_hopf();
   if (type == "ZH" && !on_hopf) meeting.add_hopf_pairs(-1, 0.0);
   if ((type == "BT" || type == "ZH") && on_hopf) meeting.add_singular(-1);
   if (type == "BT" && on_hopf) meeting.add_double_zero_hopf();  // of the branch that leaves the one where this curve has its points
-  if (type == "HH") meeting.add_hopf_pairs(curve.block, frequency_at(curve, point.u));
+  if (type == "HH") meeting.add_hopf_pairs(curve.block, units.inwards_frequency(frequency_at(curve, point.u)));
   if (type == "ZH" && on_hopf) meeting.add_hopf_pairs(-1, 0.0);
   if ((type == "FT" || type == "DP" || type == "FP") && of_branch_points) meeting.add_folds(curve.block);
   if ((type == "FT" || type == "DP") && curve.type == EventType::fold) meeting.add_singular(-1);
   if (type == "FP" || type == "PP") meeting.add_singular(of_branch_points ? curve.block : 0);
+  for (CurveStart& start : meeting.starts) units.outwards(start);
   return meeting.starts;
 }
 

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <Eigen/Eigenvalues>
+#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
 
@@ -148,12 +149,11 @@ double SpecialCurve::apart_from_branch_points(In y) const {
 double SpecialCurve::branch_point_slope(In y) const {
   const auto [v, w] = null_pair(y);
   const int n = f_.size();
-  const double x = start_.head(n).norm();
   Vector full = Vector::Zero(n + 2);
   full.head(n) = v;
   Matrix h(n, n + 2);
   f_.second(base(y), full, h);
-  return (x > 0.0 ? x : 1.0) * std::hypot(w.dot(h.col(n)) * range_[0], w.dot(h.col(n + 1)) * range_[1]);
+  return std::hypot(w.dot(h.col(n)) * range_[0], w.dot(h.col(n + 1)) * range_[1]);
 }
 
 // Eigenvalues but for the critical one, or the critical pair.
@@ -211,6 +211,16 @@ bool SpecialCurve::past_strong_resonance(In y) const {
 bool SpecialCurve::dissolved(In y) const {
   const auto* point = dynamic_cast<const BranchPointSystem*>(system_.get());
   return point && !point->persists(y);
+}
+
+bool SpecialCurve::unmoved_by_first(In y) const {
+  constexpr double open = 1e-7;  // of the largest singular value
+  if (!dynamic_cast<const BranchPointSystem*>(system_.get())) return false;
+  Matrix j(system_->size(), system_->size() + 1);
+  system_->jacobian(y, j);
+  if (!j.allFinite()) return false;
+  const Vector values = Eigen::JacobiSVD<Matrix>(j).singularValues();
+  return values[values.size() - 1] < open * values[0];
 }
 
 std::vector<CurveTest> SpecialCurve::tests() const {

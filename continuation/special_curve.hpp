@@ -38,9 +38,11 @@ class SpecialCurve {
   bool is_crossing(In y, const std::string& type) const;
   double kappa(In y) const;                     ///< squared frequency of a Hopf point; NaN on other curves
   double apart_from_branch_points(In y) const;  ///< of a fold: |w'r_p|, both parameters in their ranges; zero where branches cross as well
-  double branch_point_slope(In y) const;        ///< |D2r[v, p]' w| times the size of x: how fast that grows where branches cross
+  double branch_point_slope(In y) const;        ///< |D2r[v, p]' w|: how fast that grows, with x in its units, where branches cross
   bool past_strong_resonance(In y) const;       ///< of a curve of torus points, which ends where its multipliers meet at 1 or -1
   bool dissolved(In y) const;                   ///< a branch point of r + beta b0 = 0 only
+  /// Branch points that the first parameter does not move: the system's Jacobian has a kernel of two dimensions all along such a curve.
+  bool unmoved_by_first(In y) const;
 
  private:
   struct NullPair {

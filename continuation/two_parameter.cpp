@@ -5,7 +5,9 @@
 #include <Eigen/QR>
 #include <cmath>
 
+#include "continuation/chart_units.hpp"
 #include "continuation/codimension_two.hpp"
+#include "continuation/exchanged_problem.hpp"
 #include "continuation/period_doubling.hpp"
 
 namespace whirl::continuation {
@@ -17,8 +19,9 @@ class Follower {
   Follower(const Problem& f, const SpecialPoint& point, double p2, const TwoParameterOptions& options)
       : curve_(f, point, p2, options), options_(options), n_(f.size()), start_(curve_.start()) {}
 
-  /// False if the branch point it follows dissolves as the second parameter changes.
+  /// False if the branch point it follows dissolves as the second parameter changes, or if the first one does not move it.
   bool walk(const Observer& observer);
+  bool unmoved_by_first() const { return unmoved_by_first_; }
   DefiningCurve describe();
 
  private:
@@ -34,6 +37,7 @@ class Follower {
   int n_;
   Vector start_;
   Branch walked_;
+  bool unmoved_by_first_ = false;
 };
 
 WalkOptions Follower::walk_options() const {
@@ -53,7 +57,7 @@ Vector Follower::scales() const {
   const auto states = curve_.states(), last = start_.size() - 1;
   Vector units = start_.cwiseAbs();
   const double x = start_.head(states).norm();
-  units.head(states).setConstant(x > 0.0 ? x : 1.0);
+  units.head(states).setConstant(x > 0.0 && !curve_.problem().is_flow() ? x : 1.0);  // a flow is in units of its own
   units[states] = options_.range1[1] - options_.range1[0];
   units[last] = options_.range2[1] - options_.range2[0];
   for (Eigen::Index i = states + 1; i < last; ++i)
@@ -128,6 +132,8 @@ bool Follower::walk(const Observer& observer) {
     throw std::invalid_argument("the special point does not satisfy its system");
   }
   curve_.update_borders(start_);
+  unmoved_by_first_ = curve_.problem().is_flow() && curve_.unmoved_by_first(start_);
+  if (unmoved_by_first_) return false;
   int fresh = 0;
   bool dissolves = false;
   StopReason why = StopReason::none;
@@ -207,15 +213,31 @@ DefiningCurve follow_doubling(const OrbitProblem& orbit, const SpecialPoint& poi
   return curve;
 }
 
-}  // namespace
+// With the parameters in the other order: what is asked of the second one is asked of the first there, and dropped.
+bool follow_exchanged(const Problem& problem2, const SpecialPoint& point, double p2, const TwoParameterOptions& options, const Observer& observer,
+                      DefiningCurve& curve) {
+  const int n = problem2.size();
+  const ExchangedProblem other(problem2);
+  TwoParameterOptions exchanged = options;
+  std::swap(exchanged.range1, exchanged.range2);
+  exchanged.walk.user_values.clear();
+  SpecialPoint at = point;
+  at.u[n] = p2;
+  at.tangent.resize(0);
+  Follower follower(other, at, point.u[n], exchanged);
+  if (!follower.walk(observer)) return false;
+  curve = follower.describe();
+  curve.u.row(n).swap(curve.u.row(n + 1));
+  std::erase_if(curve.special, [](const CodimensionTwo& z) { return z.type == "MIN" || z.type == "MAX"; });
+  for (auto& z : curve.special) z.u = ExchangedProblem::exchanged(z.u);
+  return true;
+}
 
-DefiningCurve follow(const Problem& problem2, const SpecialPoint& point, double p2, const TwoParameterOptions& options, const Observer& observer) {
-  if (problem2.parameters() != 2) throw std::invalid_argument("following a special point needs a problem with two free parameters");
-  if (problem2.derivatives() < 2) throw std::invalid_argument("following a special point needs second derivatives");
-  const auto* orbit = dynamic_cast<const OrbitProblem*>(&problem2);
-  if (orbit && point.type == EventType::period_doubling) return follow_doubling(*orbit, point, p2, options, observer);
+DefiningCurve follow_as_it_stands(const Problem& problem2, const SpecialPoint& point, double p2, const TwoParameterOptions& options,
+                                  const Observer& observer) {
   Follower follower(problem2, point, p2, options);
   if (follower.walk(observer)) return follower.describe();
+  if (DefiningCurve curve; follower.unmoved_by_first() && follow_exchanged(problem2, point, p2, options, observer, curve)) return curve;
   SpecialPoint fold = point;  // of which the dissolved branch point is a point
   fold.type = EventType::fold;
   fold.subtype = "";
@@ -223,6 +245,22 @@ DefiningCurve follow(const Problem& problem2, const SpecialPoint& point, double 
   Follower on_folds(problem2, fold, p2, options);
   (void)on_folds.walk(observer);
   return on_folds.describe();
+}
+
+}  // namespace
+
+DefiningCurve follow(const Problem& problem2, const SpecialPoint& point, double p2, const TwoParameterOptions& options, const Observer& observer) {
+  if (problem2.parameters() != 2) throw std::invalid_argument("following a special point needs a problem with two free parameters");
+  if (problem2.derivatives() < 2) throw std::invalid_argument("following a special point needs second derivatives");
+  const auto* orbit = dynamic_cast<const OrbitProblem*>(&problem2);
+  if (orbit && point.type == EventType::period_doubling) return follow_doubling(*orbit, point, p2, options, observer);
+  if (!problem2.is_flow()) return follow_as_it_stands(problem2, point, p2, options, observer);
+  Vector u(point.u.size() + 1);
+  u << point.u, p2;
+  const ChartUnits units(problem2, u, point.frequency, options);
+  DefiningCurve curve = follow_as_it_stands(units.problem(), units.inwards(point), units.inwards_second(p2), units.options(), observer);
+  units.outwards(curve);
+  return curve;
 }
 
 }  // namespace whirl::continuation

@@ -52,7 +52,7 @@ struct DefiningCurve {
 };
 
 /// Follows the curve through `point` (of problem2 with p2 held at the value in `p2`). Throws std::invalid_argument if the point's type has no curve
-/// or none can be followed from it.
+/// or none can be followed from it. The observer sees the defining system's walk, of a flow in units of its own (chart_units.hpp).
 DefiningCurve follow(const Problem& problem2, const SpecialPoint& point, double p2, const TwoParameterOptions& options,
                      const Observer& observer = {});
 

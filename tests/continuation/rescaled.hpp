@@ -9,9 +9,11 @@ namespace whirl::continuation::text_model {
 
 class Rescaled : public Problem {
  public:
-  Rescaled(const Problem& f, const Vector& a, double b, double c)
-      : Problem(f.size(), 1, f.is_flow()), f_(f), into_(f.size() + 1), out_(a / c), h_(f.size(), f.size() + 1) {
-    into_ << a.cwiseInverse(), 1.0 / b;
+  Rescaled(const Problem& f, const Vector& a, double b, double c) : Rescaled(f, a, Vector::Constant(f.parameters(), b), c) {}
+  /// A factor for each parameter.
+  Rescaled(const Problem& f, const Vector& a, const Vector& b, double c)
+      : Problem(f.size(), f.parameters(), f.is_flow()), f_(f), into_(f.size() + b.size()), out_(a / c), h_(f.size(), f.size() + b.size()) {
+    into_ << a.cwiseInverse(), b.cwiseInverse();
     offer_derivatives(f.derivatives());
     for (const auto& r : f.reflections()) add_reflection(r);
   }

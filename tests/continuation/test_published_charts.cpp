@@ -147,7 +147,7 @@ TEST_CASE("a curve of Hopf points that only a Bogdanov-Takens point leads to") {
 
 TEST_CASE("a fold curve that ends where a pitchfork degenerates") {
   // p = -q^2 - (c - q)^2 / 4 on the folds, p = -q^2 on the pitchforks: they meet where q = c
-  for (const std::vector<std::vector<std::string>>& mirrors : {std::vector<std::vector<std::string>>{}}) {
+  for (const std::vector<std::vector<std::string>>& mirrors : {std::vector<std::vector<std::string>>{}, {{"x"}}}) {
     const System s{{"x"}, {"(p + q^2)*x + (c - q)*x^3 - x^5"}, {{"p", -1.0}, {"c", 1.0}, {"q", 0.3}}, mirrors};
     const auto curves = chart(s, {"p", "q"}, ranges(-3.0, 1.0, -1.0, 2.0), {0.0, -1.0});
     CAPTURE(mirrors.size());
