@@ -7,6 +7,7 @@
 #include "continuation/augmented.hpp"
 #include "continuation/multiple_point.hpp"
 #include "continuation/period_doubling.hpp"
+#include "continuation/state_problem.hpp"
 #include "continuation/switching.hpp"
 #include "continuation/torus.hpp"
 #include "core/problem_in_units.hpp"
@@ -69,6 +70,29 @@ bool is_multiple(const Curve& curve, const Vector& u) {
   return point && curve.length(point->u - u) <= same * (1.0 + curve.length(u));
 }
 
+// Where another branch with all the symmetries of this one crosses it.
+bool branch_point_of_state(const Curve& curve, const Sample& near, SpecialPoint& out) {
+  const Problem& f = curve.problem();
+  const StateProblem own(f, block_or_empty(curve.blocks(), 0));
+  const bool whole = own.size() == f.size();
+  const Vector at = whole ? near.u : own.restricted(near.u);
+  const BranchPointSystem system(whole ? f : static_cast<const Problem&>(own), at);
+  const Vector start = system.unknowns(at);
+  if (!start.allFinite()) return false;
+  const Vector units = sizes(curve, system, start, near.u, 1);
+  const NewtonResult r = newton_in_units(system, start, units, {.tolerance = 1e-13, .max_iterations = 12});
+  if (!r.settled() || !persists(r.x, units)) return false;
+  const Vector found = system.base_point(r.x), u = whole ? found : own.lifted(found);
+  if (is_multiple(curve, u)) return false;
+  out = {};
+  out.type = EventType::branch_point;
+  out.u = u;
+  out.tangent = near.tangent;
+  out.residual = r.residual;
+  name_branch_point(f, out, {.range = curve.p_scale(), .size = curve.x_scale()});
+  return true;
+}
+
 }  // namespace
 
 bool special_point_near(const Curve& curve, const EventKind& kind, const Sample& near, SpecialPoint& out, double frequency) {
@@ -84,9 +108,8 @@ bool special_point_near(const Curve& curve, const EventKind& kind, const Sample&
       system = std::make_unique<SingularSystem>(f, state, state, near.u);
       break;
     case EventType::branch_point:
-      if (kind.block > 0) system = std::make_unique<SingularSystem>(f, state, block, near.u);
-      else if (blocks.indices.size() == 1) system = std::make_unique<BranchPointSystem>(f, near.u);
-      else return false;
+      if (kind.block == 0) return branch_point_of_state(curve, near, out);
+      system = std::make_unique<SingularSystem>(f, state, block, near.u);
       break;
     case EventType::hopf:
       if (!(frequency > 0.0) && !(near.kappa[static_cast<std::size_t>(kind.block)] > 0.0)) return false;  // no pair here
@@ -107,14 +130,12 @@ bool special_point_near(const Curve& curve, const EventKind& kind, const Sample&
   }
   const Vector start = system->unknowns(near.u);
   if (!start.allFinite()) return false;
-  const bool has_extra = kind.type == EventType::hopf || kind.type == EventType::torus || (kind.type == EventType::branch_point && kind.block == 0);
+  const bool has_extra = kind.type == EventType::hopf || kind.type == EventType::torus;
   const Vector units = sizes(curve, *system, start, near.u, has_extra ? 1 : 0);
   NewtonResult r = newton_in_units(*system, start, units, {.tolerance = 1e-13, .max_iterations = 12});
   if (!r.settled()) return false;
   if (kind.type == EventType::hopf && !(static_cast<HopfSystem&>(*system).kappa(r.x) > 0.0)) return false;
   if (kind.type == EventType::torus && !(static_cast<TorusSystem&>(*system).kappa(r.x) > 0.0)) return false;
-  if (kind.type == EventType::branch_point && kind.block == 0 && !persists(r.x, units)) return false;
-  if (kind.type == EventType::branch_point && kind.block == 0 && is_multiple(curve, system->base_point(r.x))) return false;
   out = {};
   out.type = kind.type;
   out.block = kind.block;
@@ -123,7 +144,6 @@ bool special_point_near(const Curve& curve, const EventKind& kind, const Sample&
   out.residual = r.residual;
   out.subtype = kind.type == EventType::branch_point ? blocks.subtype[static_cast<std::size_t>(kind.block)] : "";
   if (auto* singular = dynamic_cast<SingularSystem*>(system.get())) out.null_vector = singular->null_vector(r.x);
-  if (kind.type == EventType::branch_point && kind.block == 0) name_branch_point(f, out, {.range = curve.p_scale(), .size = curve.x_scale()});
   if (kind.type == EventType::hopf) out.frequency = std::sqrt(static_cast<HopfSystem&>(*system).kappa(r.x));
   if (kind.type == EventType::torus) {
     const auto& torus = static_cast<TorusSystem&>(*system);

@@ -192,7 +192,7 @@ std::vector<Vector> crossing_directions(const Problem& f, const SpecialPoint& po
   if (f.derivatives() < 2) return {};
   Matrix j(n, n + 1), h(n, n + 1);
   f.jacobian(point.u, j);
-  const Eigen::JacobiSVD<Matrix> svd(j, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  const Eigen::BDCSVD<Matrix> svd(j, Eigen::ComputeFullU | Eigen::ComputeFullV);
   const Matrix phi = svd.matrixV().rightCols(2);
   const Vector w = svd.matrixU().col(n - 1);
   Eigen::Matrix2d q;

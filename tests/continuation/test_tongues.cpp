@@ -22,7 +22,7 @@ const Family four_modes{[](std::mt19937& random) { return cable(random, 2); }, 8
 
 // Walks at default steps beside the reference; returns the number of edges there are.
 int check_family(const Family& family, unsigned first, unsigned last) {
-  int edges = 0, untraced = 0;
+  int edges = 0;
   for (unsigned seed = first; seed < last; ++seed) {
     std::mt19937 random(seed);
     const Case c = family.draw(random);
@@ -33,13 +33,11 @@ int check_family(const Family& family, unsigned first, unsigned last) {
     const Comparison result = compare(c, lower, upper, family.grid);
     if (!result.ok) continue;
     CAPTURE(c.family, seed, lower, upper);
-    CHECK((result.missed == 0 || result.unresolved > 0));  // nothing in silence: what is not located is reported as unresolved
-    CHECK((result.unresolved == 0 || result.missed > 0));
+    CHECK(result.missed == 0);
+    CHECK(result.unresolved == 0);
     CHECK(result.extra == 0);
-    untraced += result.missed > 0 ? 1 : 0;
     edges += result.edges;
   }
-  CHECK(untraced <= 1);  // of two thousand seeds one, among the four-mode cables
   return edges;
 }
 
@@ -58,6 +56,7 @@ TEST_CASE("tongues: a hundred random ones at default steps, both edges of each a
   CHECK(check_family(sums, 0, 22) > 20);
   CHECK(check_family(two_modes, 0, 15) > 20);
   CHECK(check_family(four_modes, 13, 16) >= 6);
+  CHECK(check_family(four_modes, 1119, 1120) == 4);  // two of them: the antisymmetric mode in plane at its own frequency, a multiplier of 1
 }
 
 TEST_CASE("tongues: two thousand random ones at default steps, both edges of each and nothing else", "[slow]") {
