@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "continuation/parabola.hpp"
+#include "continuation/turning.hpp"
 
 namespace whirl::continuation {
 namespace {
@@ -33,8 +34,7 @@ const MultiplierPair& pair_of(const Sample& s, int i) { return s.pairs[static_ca
 }  // namespace
 
 void CollisionSearch::follow(const Sample& before, const Sample& a, Sample& b) {
-  const double behind = curve_.length(a.u - before.u), ahead = curve_.length(b.u - a.u);
-  pairing_.follow(a.pairs, behind > 0.0 ? ahead / behind : 0.0, b.pairs);
+  pairing_.follow(a.pairs, stretch_of_turn(curve_, before, a, b), b.pairs);
   b.settled.clear();
 }
 

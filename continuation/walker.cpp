@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "continuation/natural_size.hpp"
+#include "continuation/turning.hpp"
 #include "core/problem_in_units.hpp"
 
 namespace whirl::continuation {
@@ -145,6 +146,7 @@ struct Walker::State {
   bool goes_on_alike(double slope, double distance, const Sample& near, const Sample& far) const;
   bool is_unbounded() const;
   bool stands_upright(const WalkOptions& options);
+  bool turns_too_far(double least_step);
 };
 
 // Does the state go on while the parameter stays? There r_x is singular all along, and what changes its sign is rounding: no event.
@@ -161,6 +163,14 @@ bool Walker::State::stands_upright(const WalkOptions& options) {
   if (++upright_points < points || arclength - upright_from < length) return false;
   std::erase_if(branch.special, [this](const SpecialPoint& e) { return e.arclength > upright_from; });
   return true;
+}
+
+// Do multipliers turn so far in the step that lines of resonance may be passed unseen? The next step is chosen by it as well.
+bool Walker::State::turns_too_far(double least_step) {
+  constexpr TurningLimits limits;
+  const double turn = curve.orbit() && has_before ? largest_turn(*next) / limits.most : 0.0;
+  factor = std::max(factor, std::min(turn / 0.6, 2.0));
+  return turn > 1.0 && step > least_step;
 }
 
 Walker::Walker(const Problem& problem, WalkOptions options) : problem_(problem), options_(std::move(options)) { options_.validate(); }
@@ -250,6 +260,7 @@ bool Walker::begin(const Vector& u0, const Vector& direction, bool from_branch_p
       s.step = std::max(options_.min_step, 0.05 * options_.initial_step);
       if (!s.curve.sample(u0, normal, *s.now)) return false;
     }
+    s.step = std::max(options_.min_step, first_step_of_orbit(s.curve, u0, s.now->tangent, s.step));
     s.has_signature = true;
     s.branch.append(s.now->u, s.now->tangent, 0.0, s.now->residual, 0.0, s.now->iterations, s.curve.unstable(s.now->signature),
                     &s.curve.eigenvalues());
@@ -471,6 +482,7 @@ bool Walker::locate_events() {
   State& s = *s_;
   if (!options_.locate_events || !s.has_signature) return true;
   s.finder.follow(*s.before, *s.now, *s.next);
+  if (s.turns_too_far(options_.least_step_on_suspicion * options_.max_step)) return false;
   for (const int r : s.broken) {
     if (!mirror_crossing(s.curve, *s.now, *s.next, r, s.crossing)) continue;
     // Stop on the branch point; what lies between is still looked at. Not nearer than 1e-3 of the step: the critical eigenvalue and the
@@ -499,9 +511,10 @@ bool Walker::locate_events() {
   const bool last = s.stop != StopReason::none || (s.accepted == first && !s.departed);
   if (last || !(s.now->signature == s.next->signature) || !(s.before->signature == s.now->signature) ||
       s.finder.turns_at(*s.before, *s.now, *s.next) || s.finder.suspects(*s.before, *s.now, *s.next, last)) {
+    const int undecided = s.finder.collisions().undecided();
     auto& found = s.finder.find(*s.before, *s.now, *s.next, last);
-    const bool may_refine = s.unexplained < most_unexplained;
-    if (may_refine && s.finder.passed_over() && s.step > options_.least_step_on_suspicion * options_.max_step) return false;
+    const bool may_refine = s.unexplained < most_unexplained, open = s.finder.passed_over() || s.finder.collisions().undecided() > undecided;
+    if (may_refine && open && s.step > options_.least_step_on_suspicion * options_.max_step) return false;
     if (std::any_of(found.begin(), found.end(), [this](const auto& e) { return asks_for_shorter_step(e); })) return false;
     s.refinements = 0;
     s.unexplained += std::any_of(found.begin(), found.end(), [](const auto& e) { return e.type == EventType::unresolved; }) ? 1 : 0;
