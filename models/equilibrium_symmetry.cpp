@@ -163,31 +163,74 @@ std::vector<Symmetry> continuous_symmetries(const EquilibriumModel& model, const
   return all;
 }
 
-std::vector<std::string> periodic_variables(const EquilibriumModel& model, const std::vector<std::string>& lenses) {
-  constexpr int points = 12;
+// What f(x + 2 pi e_i) - f(x) is at every point, if it is the same at all: what f gains by a turn of variable i. So it is for variables that f holds
+// as angles, linearly, or both.
+//
+//   f(x + 2 pi k) = f(x) + sum_i k_i gain_i for whole k: the turns are the whole vectors that the gains annihilate
+std::vector<Turn> turns(const EquilibriumModel& model, const std::vector<std::string>& lenses) {
+  constexpr int points = 12, largest = 40;
   const VectorField f = bound(model, model.rhs, lenses);
   const auto samples = sample_points(model, lenses, points);
-  const std::size_t n = model.variables.size();
-  // The largest change of f, against f, when variable i moves by `shift`.
-  const auto change = [&](std::size_t i, double shift) {
+  const int n = static_cast<int>(model.variables.size());
+  if (samples.empty() || n > largest) return {};
+  const auto value = [&](const Vector& u) {
+    Vector r(f.equations());
+    f.evaluate<double>({u.data(), static_cast<std::size_t>(u.size())}, {r.data(), static_cast<std::size_t>(r.size())});
+    return r;
+  };
+  const auto gain = [&](const Vector& u, const Vector& by) {
+    Vector moved = u;
+    moved.head(n) += by;
+    return Vector(value(moved) - value(u));
+  };
+  // The largest difference between two gains, against f.
+  const auto change = [&](const Vector& by, const Vector& expected) {
     double most = 0.0;
     for (const Vector& u : samples) {
-      std::vector<double> at(u.begin(), u.end()), here(n), there(n);
-      f.evaluate<double>(at, here);
-      at[i] += shift;
-      f.evaluate<double>(at, there);
-      for (std::size_t k = 0; k < n; ++k) {
-        const double apart = std::abs(here[k] - there[k]) / (1.0 + std::abs(here[k]));
-        most = std::isfinite(apart) ? std::max(most, apart) : std::numeric_limits<double>::infinity();
-      }
+      const double apart = ((gain(u, by) - expected).array().abs() / (1.0 + value(u).array().abs())).maxCoeff();
+      most = std::isfinite(apart) ? std::max(most, apart) : std::numeric_limits<double>::infinity();
     }
     return most;
   };
-  std::vector<std::string> found;
-  for (std::size_t i = 0; i < n && !samples.empty(); ++i)
-    if (change(i, 1.0) > 1e-3 && change(i, 2.0 * std::numbers::pi) < rounding) found.push_back(model.variables[i]);
+  const double turn = 2.0 * std::numbers::pi;
+  std::vector<int> candidates;
+  std::vector<Vector> gains;
+  for (int i = 0; i < n; ++i) {
+    Vector at = gain(samples[0], turn * Vector::Unit(n, i));
+    if (!(change(turn * Vector::Unit(n, i), at) < rounding)) continue;
+    candidates.push_back(i);
+    gains.push_back(at.unaryExpr([](double x) { return std::abs(x) < rounding ? 0.0 : x; }));
+  }
+  std::vector<Turn> found;
+  if (candidates.empty()) return found;
+  Matrix columns(f.equations(), static_cast<Eigen::Index>(candidates.size()));
+  for (std::size_t c = 0; c < candidates.size(); ++c) columns.col(static_cast<Eigen::Index>(c)) = gains[c];
+  const Matrix basis = tidy(kernel(columns));
+  for (Eigen::Index r = 0; r < basis.rows(); ++r) {
+    Vector k = Vector::Zero(n);
+    for (std::size_t c = 0; c < candidates.size(); ++c) k[candidates[c]] = basis(r, static_cast<Eigen::Index>(c));
+    int scale = 1;
+    while (scale < 12 && (scale * k - (scale * k).array().round().matrix()).norm() > rounding) ++scale;
+    k = (scale * k).array().round();
+    const Vector none = Vector::Zero(f.equations());
+    if (change(k, none) > 1e-3 && change(turn * k, none) < rounding) found.push_back({k});
+  }
   return found;
 }
+
+Turn turn_of(const EquilibriumModel& model, const std::vector<Turn>& turns, const std::string& variable) {
+  const auto i = std::find(model.variables.begin(), model.variables.end(), variable) - model.variables.begin();
+  Turn best{Vector::Unit(model.size(), i)};
+  bool found = false;
+  for (const Turn& t : turns) {
+    if (std::abs(t.k[i]) != 1.0 || (found && (t.k.array() != 0.0).count() >= (best.k.array() != 0.0).count())) continue;
+    best.k = t.k[i] * t.k;
+    found = true;
+  }
+  return best;
+}
+
+std::string describe(const Turn& turn, const std::vector<std::string>& variables) { return linear_text(turn.k, 0.0, variables); }
 
 std::string describe(const Symmetry& s, const std::vector<std::string>& variables) {
   if (s.a.isZero(0.0)) return "a translation along " + linear_text(s.b, 0.0, variables);

@@ -29,8 +29,16 @@ struct Symmetry {
 /// Generators of all that have this form; none is looked for among more than `largest` variables: their number is its square.
 std::vector<Symmetry> continuous_symmetries(const EquilibriumModel& model, const std::vector<std::string>& lenses, int largest = 12);
 
-/// Variables in which the equations have the period 2 pi.
-std::vector<std::string> periodic_variables(const EquilibriumModel& model, const std::vector<std::string>& lenses);
+/// Whole numbers k with f(x + 2 pi k) = f(x): one variable that is an angle, or several that turn together, as pendula tied by a spring.
+struct Turn {
+  Vector k;  ///< n, whole
+};
+/// A basis of all of them, each with as few entries as possible, but for those along which f does not change at all.
+std::vector<Turn> turns(const EquilibriumModel& model, const std::vector<std::string>& lenses);
+/// The turn that takes the variable round once, with what it takes along; that variable alone if none of them does.
+Turn turn_of(const EquilibriumModel& model, const std::vector<Turn>& turns, const std::string& variable);
+/// "theta", or "a + b" of variables that turn together.
+std::string describe(const Turn& turn, const std::vector<std::string>& variables);
 
 /// "translation along theta1 + theta2" or "rotation of (x, y)", with what else it moves.
 std::string describe(const Symmetry& symmetry, const std::vector<std::string>& variables);

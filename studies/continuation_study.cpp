@@ -123,7 +123,7 @@ ExitStatus run(const Configuration& c, RunContext& context) {
   write_study(file, c);
   s.source->write(file, context);
   NetworkOptions options = s.network;
-  for (const auto& window : s.source->angles()) options.walk.bounds.push_back(window);
+  for (const auto& window : s.source->angles()) options.walk.bounds.push_back(window.bound);
   Network net(*f, options);
   net.set_namer(s.source->namer());
   std::string left_isolation;

@@ -101,6 +101,33 @@ EquilibriumModel equilibrium_model_of(const Configuration& c) {
   return model;
 }
 
+namespace {
+
+// Angles that no key names, and names that are no angles.
+void note_turns(const SectionReader& m, const EquilibriumModel& model, const std::vector<std::string>& free, std::vector<std::string>& notes) {
+  const auto turns = models::turns(model, free);
+  for (const auto& name : model.angles) {
+    const auto i = std::find(model.variables.begin(), model.variables.end(), name) - model.variables.begin();
+    const bool turning = std::any_of(turns.begin(), turns.end(), [&](const models::Turn& t) { return std::abs(t.k[i]) == 1.0; });
+    if (!turning && !models::sample_points(model, free, 1).empty())
+      throw m.error("angles", fmt::format("the equations do not repeat when {} goes on by 2 pi, whatever goes on with it", name));
+  }
+  if (turns.empty() || !model.angles.empty()) return;
+  std::vector<std::string> all, first;
+  for (const auto& t : turns) {
+    all.push_back(models::describe(t, model.variables));
+    for (int i = 0; i < model.size(); ++i)
+      if (std::abs(t.k[i]) == 1.0) {
+        first.push_back(fmt::format("\"{}\"", model.variables[static_cast<std::size_t>(i)]));
+        break;
+      }
+  }
+  notes.push_back(fmt::format("the equations repeat every 2 pi in {}: equilibrium_model.angles = [{}] takes each solution once", fmt::join(all, ", "),
+                              fmt::join(first, ", ")));
+}
+
+}  // namespace
+
 EquilibriumModel isolated_model_of(const Configuration& c, const std::vector<std::string>& lenses, std::vector<std::string>& notes) {
   const SectionReader m(c, "equilibrium_model");
   EquilibriumModel model = equilibrium_model_of(c);
@@ -139,9 +166,7 @@ EquilibriumModel isolated_model_of(const Configuration& c, const std::vector<std
     notes.push_back(
         fmt::format("the equations conserve {0}, so that no rest point is isolated: {0} keeps the value {1:g} that it has at initial", sum, value));
   }
-  if (const auto turning = models::periodic_variables(model, free); !turning.empty() && model.angles.empty())
-    notes.push_back(
-        fmt::format("the equations repeat every 2 pi in {}: equilibrium_model.angles takes each solution once", fmt::join(turning, ", ")));
+  note_turns(m, model, free, notes);
   return model;
 }
 

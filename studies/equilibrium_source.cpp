@@ -117,7 +117,10 @@ class StaySource : public EquilibriumSource {
 class ExpressionSource : public EquilibriumSource {
  public:
   explicit ExpressionSource(const Configuration& c)
-      : c_(c), model_(isolated_model_of(c, lenses_of(c), notes_)), symmetries_(continuous_symmetries(model_, free_of(c, model_))) {}
+      : c_(c),
+        model_(isolated_model_of(c, lenses_of(c), notes_)),
+        symmetries_(continuous_symmetries(model_, free_of(c, model_))),
+        turns_(model_.angles.empty() ? std::vector<Turn>{} : turns(model_, free_of(c, model_))) {}
 
   std::unique_ptr<Problem> problem(const std::vector<std::string>& lenses) const override {
     return std::make_unique<EquilibriumFlow>(model_, lenses);
@@ -164,13 +167,15 @@ class ExpressionSource : public EquilibriumSource {
   }
 
   // Half a turn about the start both ways, a little off so that neither 0 nor half a turn stands on its edge.
-  std::vector<CoordinateBound> angles() const override {
+  std::vector<AngleWindow> angles() const override {
     constexpr double off_centre = 0.37, overlap = 1e-4;
-    std::vector<CoordinateBound> windows;
+    std::vector<AngleWindow> windows;
     for (const auto& name : model_.angles) {
       const auto i = std::find(model_.variables.begin(), model_.variables.end(), name) - model_.variables.begin();
       const double centre = model_.initial[static_cast<std::size_t>(i)] + off_centre;
-      windows.push_back({static_cast<int>(i), centre - std::numbers::pi, centre + std::numbers::pi + overlap});
+      const Vector turn = 2.0 * std::numbers::pi * turn_of(model_, turns_, name).k;
+      const bool known = std::any_of(windows.begin(), windows.end(), [&](const AngleWindow& w) { return w.turn == turn; });
+      if (!known) windows.push_back({{static_cast<int>(i), centre - std::numbers::pi, centre + std::numbers::pi + overlap}, turn});
     }
     return windows;
   }
@@ -252,6 +257,7 @@ class ExpressionSource : public EquilibriumSource {
   std::vector<std::string> notes_;
   EquilibriumModel model_;
   std::vector<Symmetry> symmetries_;
+  std::vector<Turn> turns_;  // of the angles named
 };
 
 }  // namespace
@@ -293,10 +299,10 @@ std::vector<Observable> peaks_of(const Configuration& c, const EquilibriumSource
   return wanted;
 }
 
-Vector within_windows(Vector u, const std::vector<CoordinateBound>& windows) {
-  constexpr double turn = 2.0 * std::numbers::pi;
-  for (const auto& w : windows)
-    if (u[w.index] < w.lower || u[w.index] > w.upper) u[w.index] -= turn * std::floor((u[w.index] - w.lower) / turn);
+Vector within_windows(Vector u, const std::vector<AngleWindow>& windows) {
+  for (const auto& [bound, turn] : windows)
+    if (const double x = u[bound.index]; x < bound.lower || x > bound.upper)
+      u.head(turn.size()) -= turn * std::floor((x - bound.lower) / (2.0 * std::numbers::pi));
   return u;
 }
 
@@ -307,10 +313,10 @@ void follow_angles(Network& net, const EquilibriumSource& source, RunContext& co
     std::vector<Vector> beyond;  // by value: branches come to be while they are followed
     const Branch& branch = net.branches()[b];
     for (const int i : {0, branch.points() - 1})
-      for (const auto& w : windows)
-        if (branch.points() > 0 && (branch.u(i)[w.index] == w.lower || branch.u(i)[w.index] == w.upper)) {
+      for (const auto& [bound, turn] : windows)
+        if (branch.points() > 0 && (branch.u(i)[bound.index] == bound.lower || branch.u(i)[bound.index] == bound.upper)) {
           beyond.push_back(branch.u(i));
-          beyond.back()[w.index] += (branch.u(i)[w.index] == w.lower ? 2.0 : -2.0) * std::numbers::pi;
+          beyond.back().head(turn.size()) += (branch.u(i)[bound.index] == bound.lower ? 1.0 : -1.0) * turn;
         }
     const std::string origin = branch.name + " a turn on";
     for (const Vector& u : beyond) {

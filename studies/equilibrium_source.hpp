@@ -22,6 +22,12 @@ struct Start {
   std::string origin;
 };
 
+/// An angle that walks keep within one turn, and all that turns with it.
+struct AngleWindow {
+  continuation::CoordinateBound bound;
+  Vector turn;  ///< 2 pi in the angle, multiples of it in others that it takes along
+};
+
 class EquilibriumSource {
  public:
   virtual ~EquilibriumSource() = default;
@@ -35,16 +41,16 @@ class EquilibriumSource {
 
   /// Quantities of a point (x, parameters) of a problem of this source.
   virtual std::vector<PointColumn> columns(const Problem& f) const = 0;
+  /// Further columns where the unknowns are amplitudes: extremes of the coordinates over a period.
+  virtual std::vector<PointColumn> extremes(const Problem&) const { return {}; }
   /// Those of `columns` whose extrema can be found, each with x'Qx + l'x.
   virtual std::vector<continuation::Observable> observables() const = 0;
   virtual continuation::Network::Namer namer() const = 0;
   /// Points near solutions, in the order in which they are to be tried; f has one free parameter.
   virtual std::vector<Start> starts(const Problem& f, const std::string& lens, double lower, double upper) const = 0;
   virtual void write(ResultFile& file, RunContext& context) const = 0;
-  /// Further columns where the unknowns are amplitudes: extremes of the coordinates over a period.
-  virtual std::vector<PointColumn> extremes(const Problem&) const { return {}; }
-  /// Coordinates of which values a period apart are one, with the window of one period that walks keep to.
-  virtual std::vector<continuation::CoordinateBound> angles() const { return {}; }
+  /// Coordinates of which values a turn apart are one.
+  virtual std::vector<AngleWindow> angles() const { return {}; }
   /// Why the solution u of f is not isolated, one line with what to do about it; "" if it is, or if the source cannot tell.
   virtual std::string not_isolated(const Problem&, In) const { return ""; }
   /// Can a branch that begins with isolated solutions lead to others that are not?
@@ -66,6 +72,6 @@ void try_seed(continuation::Network& net, const Vector& u, const std::string& or
 /// Goes on at the other end of an angle's window where a branch has left it.
 void follow_angles(continuation::Network& net, const EquilibriumSource& source, RunContext& context);
 /// u with each angle within its window.
-Vector within_windows(Vector u, const std::vector<continuation::CoordinateBound>& windows);
+Vector within_windows(Vector u, const std::vector<AngleWindow>& windows);
 
 }  // namespace whirl::studies

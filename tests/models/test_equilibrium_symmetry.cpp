@@ -137,11 +137,34 @@ TEST_CASE("translations and rotations are found and described", "[symmetry]") {
 }
 
 TEST_CASE("variables that repeat every turn are found", "[symmetry]") {
-  CHECK(periodic_variables(kuramoto(0.1), {"K"}) == std::vector<std::string>{"a", "b", "c"});
-  CHECK(periodic_variables(ring(), {"p"}).empty());
+  const auto turning = [](const EquilibriumModel& m, const std::vector<std::string>& lenses) {
+    std::vector<std::string> all;
+    for (const auto& t : turns(m, lenses)) all.push_back(describe(t, m.variables));
+    return all;
+  };
+  CHECK(turning(kuramoto(0.1), {"K"}) == std::vector<std::string>{"a", "b", "c"});
+  CHECK(turning(ring(), {"p"}).empty());
   const EquilibriumModel pendulum{
       .variables = {"x", "v"}, .parameters = {{"p", 0.2}}, .rhs = {"v", "p - sin(x)*cos(2*x) - v"}, .initial = {0.2, 0.0}};
-  CHECK(periodic_variables(pendulum, {"p"}) == std::vector<std::string>{"x"});
+  CHECK(turning(pendulum, {"p"}) == std::vector<std::string>{"x"});
+  // Tied by springs and gears they turn together only.
+  const EquilibriumModel tied{.variables = {"x", "y", "z"},
+                              .parameters = {{"p", 0.2}, {"c", 0.3}},
+                              .rhs = {"p - sin(x) + c*(y - x)", "p - sin(y) + c*(x - y)", "p - sin(z)"},
+                              .initial = {0.2, 0.1, 0.0}};
+  CHECK(turning(tied, {"p"}) == std::vector<std::string>{"x + y", "z"});
+  CHECK(describe(turn_of(tied, turns(tied, {"p"}), "y"), tied.variables) == "x + y");
+  const EquilibriumModel geared{
+      .variables = {"x", "y"}, .parameters = {{"p", 0.2}}, .rhs = {"p - sin(x) + y - 2*x", "cos(y) - (y - 2*x)"}, .initial = {0.2, 0.1}};
+  CHECK(turning(geared, {"p"}) == std::vector<std::string>{"x + 2*y"});
+  CHECK(describe(turn_of(geared, turns(geared, {"p"}), "x"), geared.variables) == "x + 2*y");
+  const EquilibriumModel slanted{// half a turn of y is none
+                                 .variables = {"x", "y"},
+                                 .parameters = {{"p", 0.2}},
+                                 .rhs = {"p - sin(x) + y - x/2", "cos(y) - y + x/2"},
+                                 .initial = {0.2, 0.1}};
+  CHECK(turning(slanted, {"p"}) == std::vector<std::string>{"2*x + y"});
+  CHECK(turning({.variables = {"x"}, .parameters = {{"p", 0.2}}, .rhs = {"p - x - sin(x)"}, .initial = {0.0}}, {"p"}).empty());
 }
 
 TEST_CASE("a field that is linear only near the start has no symmetry", "[symmetry]") {

@@ -1,4 +1,6 @@
 // Rest points that are not isolated, and corners: what a run says and does about them.
+#include <fmt/format.h>
+
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <numbers>
@@ -104,6 +106,30 @@ TEST_CASE("angles: each solution once", "[isolated]") {
   CHECK(r.ran.status == 0);
   REQUIRE(r.types == std::vector<std::string>{"LP", "LP"});
   CHECK(std::abs(r.parameter[0] * r.parameter[1] + 1.0) < 1e-10);
+}
+
+TEST_CASE("angles that turn together: each solution once", "[isolated]") {
+  // AUTO's coupled pendula: one fold at R = 1, one branch point at sqrt(1 - (2 ga)^2) for each 2 pi.
+  const std::string pendula =
+      "variables = [\"p1\", \"p2\", \"q1\", \"q2\"]\nparameters = { ga = 0.175, eps = 0.1, R = 0.0 }\n"
+      "rhs = [\"q1\", \"q2\", \"-eps*q1 - sin(p1) + R + ga*(p2-p1)\", \"-eps*q2 - sin(p2) + R + ga*(p1-p2)\"]\ninitial = [0.0, 0.0, 0.0, 0.0]\n";
+  const Folder f;
+  const Result plain = run(f, study(pendula, "R", "[0.0, 0.5]"), "R");
+  CHECK(plain.ran.err.find("2 pi in p1 + p2: equilibrium_model.angles = [\"p1\"]") != std::string::npos);
+  for (const char* angles : {"angles = [\"p1\"]\n", "angles = [\"p2\", \"p1\"]\n"}) {
+    const Result r = run(f, study(pendula + angles, "R", "[0.0, 1.5]"), "R");
+    INFO(angles << r.ran.err);
+    int folds = 0, pitchforks = 0;
+    for (std::size_t i = 0; i < r.types.size(); ++i) {
+      folds += r.types[i] == "LP" && std::abs(r.parameter[i] - 1.0) < 1e-10 ? 1 : 0;
+      pitchforks += r.subtypes[i] == "PF" && std::abs(r.parameter[i] - std::sqrt(1.0 - 0.35 * 0.35)) < 1e-10 ? 1 : 0;
+    }
+    CHECK(folds == 1);
+    CHECK(pitchforks == 1);
+  }
+  const Result none = run(f, study(pendula + "angles = [\"q1\"]\n", "R", "[0.0, 0.5]"), "R");
+  CHECK(none.ran.status == 2);
+  CHECK(none.ran.err.find("do not repeat") != std::string::npos);
 }
 
 TEST_CASE("corners are said, and nothing grinds", "[isolated]") {
