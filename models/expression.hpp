@@ -5,10 +5,10 @@
 ///     f.evaluate<double>(inputs, out);                 // and in Dual or nested Dual: derivatives are exact
 ///
 /// GiNaC reads the text; its tree is turned once into a flat list of steps that runs in any scalar, common parts once.
-/// Accepted: names, decimal numbers, pi, + - * / ^ ( ), exp log sin cos tan sinh cosh tanh atan sqrt abs. `^` is power (expression_power.hpp): by its
-/// value also where the exponent is a parameter that happens to be whole, one-sided at 0, NaN for other powers of negative numbers. A number in the
-/// text is the nearest double; numbers are combined in double.
-/// A sign behind an operator, and x^y^z, need parentheses: readers disagree about them.
+/// Accepted: names, decimal numbers, pi, + - * / ^ ( ), exp log sin cos tan sinh cosh tanh atan sqrt abs sign max min. `^` is power
+/// (expression_power.hpp): by its value also where the exponent is a parameter that happens to be whole, one-sided at 0, NaN for other powers of
+/// negative numbers. A number in the text is the nearest double; numbers are combined in double. A sign behind an operator, and x^y^z, need
+/// parentheses: readers disagree about them.
 ///
 /// Throws ExpressionError with the equation and one line of reason.
 
@@ -20,6 +20,7 @@
 #include <variant>
 #include <vector>
 
+#include "models/expression_corner.hpp"
 #include "models/expression_power.hpp"
 
 namespace whirl::models {
@@ -54,7 +55,10 @@ struct Step {
     tanh,
     atan,
     sqrt,
-    abs
+    abs,
+    sign,  ///< -1, 0, 1
+    max,   ///< the larger of a and b
+    min
   };
   Op op;
   int a = 0, b = 0;
@@ -80,8 +84,12 @@ class VectorField {
 
   /// Where the first value that is not finite comes from: "log(-0.3) is not a real number"; "" if all are finite.
   std::string not_finite(std::span<const double> x) const;
-  /// What stands in each abs(...): the field has a corner where one of them is zero.
-  std::vector<double> corners(std::span<const double> x) const;
+  /// A place where the field has no derivative: there `distance` is zero.
+  struct Corner {
+    Step::Op op;      ///< abs, sign, max, min
+    double distance;  ///< what stands in abs or sign, the difference of what stands in max or min
+  };
+  std::vector<Corner> corners(std::span<const double> x) const;
 
   /// Sizes: x inputs(), r equations().
   template <class S>
@@ -157,6 +165,12 @@ S VectorField::run(const Step& step, const S* x) {
       return detail::root(a);
     case Step::Op::abs:
       return abs(a);
+    case Step::Op::sign:
+      return detail::sign(a);
+    case Step::Op::max:
+      return detail::larger(a, x[step.b]);
+    case Step::Op::min:
+      return detail::larger(a, x[step.b], -1.0);
   }
   return S(0.0);
 }

@@ -19,7 +19,8 @@ double apply(Op op, double x) {
 }
 
 Operand operand_a(const Step& s, const std::vector<Operand>& now) { return s.op == Op::constant ? fixed(0.0) : now[static_cast<std::size_t>(s.a)]; }
-bool takes_two(Op op) { return op == Op::add || op == Op::subtract || op == Op::multiply || op == Op::divide || op == Op::power; }
+bool is_choice(Op op) { return op == Op::max || op == Op::min; }
+bool takes_two(Op op) { return op == Op::add || op == Op::subtract || op == Op::multiply || op == Op::divide || op == Op::power || is_choice(op); }
 Operand operand_b(const Step& s, const std::vector<Operand>& now) { return takes_two(s.op) ? now[static_cast<std::size_t>(s.b)] : fixed(0.0); }
 
 }  // namespace
@@ -77,9 +78,15 @@ Operand Writer::raise(const Operand& base, double y) {
 
 Operand Writer::call(Op op, const Operand& a) { return a.known ? fixed(apply(op, a.number)) : write({op, a.index}); }
 
+Operand Writer::choose(Op op, const Operand& a, const Operand& b) {
+  if (!a.known || !b.known) return write({op, result(a), result(b)});
+  const double both[] = {a.number, b.number};
+  return fixed(VectorField::run<double>({op, 0, 1}, both));
+}
+
 Operand Writer::write(Step s) {
   if (!std::isfinite(s.number)) throw std::domain_error("is not a finite number");
-  if ((s.op == Op::add || s.op == Op::multiply) && s.a > s.b) std::swap(s.a, s.b);
+  if ((s.op == Op::add || s.op == Op::multiply || is_choice(s.op)) && s.a > s.b) std::swap(s.a, s.b);
   const auto [it, fresh] = known_.try_emplace({s.op, s.a, s.b, s.number}, inputs_ + static_cast<int>(steps.size()));
   if (fresh) steps.push_back(s);
   return {false, 0.0, it->second};
@@ -120,7 +127,11 @@ Operand Writer::again(const Step& s, const Operand& a, const Operand& b) {
     case Op::atan:
     case Op::sqrt:
     case Op::abs:
+    case Op::sign:
       return call(s.op, a);
+    case Op::max:
+    case Op::min:
+      return choose(s.op, a, b);
   }
   throw std::logic_error("no such step");
 }
@@ -176,6 +187,13 @@ Operand Writer::slope(const Step& s, const Operand& a, const Operand& b, const O
       return divide(multiply(da, fixed(0.5)), y);
     case Op::abs:
       return along_a(divide(a, y));
+    case Op::sign:
+      return fixed(0.0);
+    case Op::max:
+    case Op::min: {  // half of both slopes and half of their difference, with the sign of the side
+      const Operand side = multiply(call(Op::sign, subtract(a, b)), fixed(s.op == Op::max ? 0.5 : -0.5));
+      return add(multiply(add(da, db), fixed(0.5)), multiply(side, subtract(da, db)));
+    }
   }
   throw std::logic_error("no such step");
 }
@@ -283,16 +301,22 @@ std::string VectorField::not_finite(std::span<const double> x) const {
       case Op::tanh:
       case Op::atan:
       case Op::abs:
+      case Op::sign:
+      case Op::max:
+      case Op::min:
         return "a value too large for a number";
     }
   }
   return "";
 }
 
-std::vector<double> VectorField::corners(std::span<const double> x) const {
-  std::vector<double> now(x.begin(), x.begin() + inputs_), all;
+std::vector<VectorField::Corner> VectorField::corners(std::span<const double> x) const {
+  std::vector<double> now(x.begin(), x.begin() + inputs_);
+  std::vector<Corner> all;
   for (const Step& s : steps_) {
-    if (s.op == Op::abs) all.push_back(now[static_cast<std::size_t>(s.a)]);
+    const auto value = [&](int at) { return now[static_cast<std::size_t>(at)]; };
+    if (s.op == Op::abs || s.op == Op::sign) all.push_back({s.op, value(s.a)});
+    if (is_choice(s.op)) all.push_back({s.op, value(s.a) - value(s.b)});
     now.push_back(run<double>(s, now.data()));
   }
   return all;

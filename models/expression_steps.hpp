@@ -29,6 +29,7 @@ class Writer {
   Operand divide(const Operand& a, const Operand& b);
   Operand raise(const Operand& base, const Operand& exponent);
   Operand call(Step::Op op, const Operand& a);
+  Operand choose(Step::Op op, const Operand& a, const Operand& b);  ///< max, min
 
   /// The same operation on other operands.
   Operand again(const Step& step, const Operand& a, const Operand& b);

@@ -21,7 +21,7 @@ struct Limits {
   double shift = 1e-3;      // along the null vector, against 1 + |x|: where another solution is looked for
   double residual = 1e-12;  // of a solution, against the size of f_x times that of x
   double moved = 1e-6;      // g(x) of a symmetry, against 1 + |x|: it moves the solution
-  double at_corner = 1e-6;  // what stands in abs(...), against 1: zero
+  double at_corner = 1e-6;  // distance from a corner, against 1: zero
   double standing = 1e-8;   // change of the parameter against that of the state: none
   double one_place = 1e-5;  // events nearer than this, against 1 + |u|, are one corner
 };
@@ -70,10 +70,39 @@ std::string direction_text(const Vector& v, const std::vector<std::string>& vari
   return text;
 }
 
-// Is what stands in some abs(...) zero?
-bool at_corner(const models::VectorField& field, In u) {
-  const auto arguments = field.corners(std::span<const double>(u.data(), static_cast<std::size_t>(u.size())));
-  return std::any_of(arguments.begin(), arguments.end(), [](double x) { return std::abs(x) < limits.at_corner; });
+std::string corner_text(models::Step::Op op) {
+  using Op = models::Step::Op;
+  if (op == Op::max || op == Op::min) return fmt::format("both values of a {}(...) of the equations are equal", op == Op::max ? "max" : "min");
+  return op == Op::sign ? "a sign(...) of the equations jumps" : "an abs(...) of the equations is zero";
+}
+
+// Which corner of the equations u lies on: "an abs(...) of the equations is zero"; "" if on none.
+std::string corner_at(const models::VectorField& field, In u) {
+  const auto corners = field.corners(std::span<const double>(u.data(), static_cast<std::size_t>(u.size())));
+  const auto it = std::find_if(corners.begin(), corners.end(), [](const auto& c) { return std::abs(c.distance) < limits.at_corner; });
+  return it == corners.end() ? "" : corner_text(it->op);
+}
+
+// A walk steps over a jump where solutions on both sides lie near each other: they are two pieces of a branch, not one.
+void warn_of_jumps(const models::VectorField& field, const std::string& parameter, const Branch& b, RunContext& context) {
+  const auto signs_at = [&](int i) {
+    std::vector<double> signs;
+    const Vector u = b.u(i);
+    for (const auto& c : field.corners(std::span<const double>(u.data(), static_cast<std::size_t>(u.size()))))
+      if (c.op == models::Step::Op::sign) signs.push_back(c.distance);
+    return signs;
+  };
+  for (int i = 1; i < b.points(); ++i) {
+    const auto before = signs_at(i - 1), after = signs_at(i);
+    if (before.empty()) return;
+    for (std::size_t k = 0; k < after.size(); ++k)
+      if (before[k] * after[k] < 0.0) {
+        context.warn(
+            fmt::format("branch {}: a sign(...) of the equations jumps between {} = {:.10g} and {:.10g}: the pieces beside it are not connected",
+                        b.name, parameter, b.parameter(i - 1), b.parameter(i)));
+        return;
+      }
+  }
 }
 
 // Does the branch end where the parameter stands still?
@@ -135,10 +164,14 @@ std::vector<Branch> with_corners_marked(const EquilibriumModel& model, const std
   if (field.corners(anywhere).empty()) return marked;
   for (Branch& b : marked) {
     if (b.points() == 0) continue;
+    warn_of_jumps(field, parameter, b, context);
     int count = 0;
+    std::string first;
     std::vector<SpecialPoint> kept;
     for (SpecialPoint& s : b.special) {
-      if (s.type == EventType::unresolved && at_corner(field, s.u)) {
+      const std::string where = s.type == EventType::unresolved ? corner_at(field, s.u) : "";
+      if (!where.empty()) {
+        if (first.empty()) first = where;
         const bool known = std::any_of(kept.begin(), kept.end(), [&](const SpecialPoint& k) {
           return k.subtype == corner && (k.u - s.u).norm() < limits.one_place * (1.0 + s.u.norm());
         });
@@ -151,12 +184,11 @@ std::vector<Branch> with_corners_marked(const EquilibriumModel& model, const std
     }
     b.special = std::move(kept);
     if (count > 0)
-      context.warn(fmt::format("branch {}: {} where an abs(...) of the equations is zero: they have no derivative there", b.name,
-                               count == 1 ? "a corner" : fmt::format("{} corners", count)));
+      context.warn(fmt::format("branch {}: {} where {}: they have no derivative there", b.name,
+                               count == 1 ? "a corner" : fmt::format("{} corners", count), first));
     for (const auto& [reason, u] : {std::pair{b.start_reason, b.u(0)}, std::pair{b.stop_reason, b.u(b.points() - 1)}})
-      if (reason == StopReason::min_step && at_corner(field, u))
-        context.warn(
-            fmt::format("branch {} ends at a corner: an abs(...) of the equations is zero there, and more than one branch may go on", b.name));
+      if (const std::string where = corner_at(field, u); reason == StopReason::min_step && !where.empty())
+        context.warn(fmt::format("branch {} ends at a corner: {} there, and more than one branch may go on", b.name, where));
   }
   return marked;
 }

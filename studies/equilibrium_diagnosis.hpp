@@ -11,8 +11,8 @@ namespace whirl::studies {
 /// isolated; "" if it does not.
 std::string why_not_isolated(const Problem& f, In u, const std::vector<std::string>& variables, const std::vector<models::Symmetry>& symmetries);
 
-/// Unresolved changes at a zero of what stands in an abs(...) become MX with the subtype "corner", one at each place, and are warned of. So are ends
-/// there, and walks that ended because the parameter stood still while the state went on.
+/// Unresolved changes at a corner (a zero in abs, two equal values in max or min, a jump of sign) become MX with the subtype "corner", one at each
+/// place, and are warned of. So are ends there, and walks that ended because the parameter stood still while the state went on.
 std::vector<continuation::Branch> with_corners_marked(const models::EquilibriumModel& model, const std::string& parameter,
                                                       const std::vector<continuation::Branch>& branches, RunContext& context);
 

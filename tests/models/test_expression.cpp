@@ -1,5 +1,6 @@
 /// Vector fields given as text: values, exact derivatives, decimal numbers, precedence, and the one line every kind of bad text gives.
 
+#include <array>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
@@ -99,6 +100,71 @@ TEST_CASE("precedence, signs and functions of text are those of arithmetic") {
   }
   CHECK(value("abs(x)", -2.0) == 2.0);
   CHECK(value("sqrt(x^2)", -2.0) == 2.0);
+}
+
+TEST_CASE("maximum, minimum and sign") {
+  const double x = 0.7, y = 1.3;
+  const std::pair<const char*, double> cases[] = {{"max(x, y)", y},
+                                                  {"min(x,y)", x},
+                                                  {"max(y, x) - max(x, y)", 0.0},
+                                                  {"2*max(-x, -y)^2 + 1", 2.0 * x * x + 1.0},
+                                                  {"max(1e-20, -1)", 1e-20},
+                                                  {"max(x, 1) + min(x, 1)", 1.0 + x},
+                                                  {"max(x, max(y, 2))", 2.0},
+                                                  {"min((x + y)*2, (x - y))", x - y},
+                                                  {"sign(x - y)*sign(y - x)", -1.0},
+                                                  {"sign(x - x) + sign(-y)", -1.0},
+                                                  {"max(sin(x), cos(x))^0.5", std::sqrt(std::cos(x))}};
+  for (const auto& [text, expected] : cases) {
+    INFO(text);
+    CHECK(value(text) == Approx(expected).epsilon(4e-15).margin(1e-16));
+  }
+  const std::pair<const char*, const char*> refused[] = {{"max(x)", "takes two values"},
+                                                         {"max(x, y, x)", "takes two values"},
+                                                         {"abs(x, y)", "takes one value"},
+                                                         {"(x, y)", "','"},
+                                                         {"x, y", "','"},
+                                                         {"max(, y)", "missing before ','"},
+                                                         {"max(x, )", "missing before ')'"},
+                                                         {"max", "ends with"},
+                                                         {"sign x", "parentheses"},
+                                                         {"maximum(x, y)", "unknown symbol"}};
+  for (const auto& [text, why] : refused) {
+    INFO(text);
+    CHECK_THROWS_WITH(value(text), Catch::Contains(why));
+  }
+}
+
+TEST_CASE("slopes beside and on corners are those of one side; no number stays none") {
+  using D = Dual<Dual<double, 1>, 2>;
+  const VectorField f({"max(x^2, y)", "min(x^2, y)", "sign(x)*x^2"}, {"x", "y"});
+  const auto at = [&](double x, double y) {
+    std::array<D, 2> in{D(x), D(y)};
+    in[0].d[0] = 1.0;
+    in[1].d[1] = 1.0;
+    in[0].v.d[0] = 1.0;
+    std::array<D, 3> out;
+    f.evaluate<D>(in, out);
+    return out;
+  };
+  const auto beside = at(2.0, 1.0);
+  CHECK(beside[0].d[0].v == 4.0);
+  CHECK(beside[0].d[0].d[0] == 2.0);
+  CHECK(beside[0].d[1].v == 0.0);
+  CHECK(beside[1].d[1].v == 1.0);
+  CHECK(at(-2.0, 1.0)[2].d[0].v == 4.0);
+  const double slope = at(1.0, 1.0)[0].d[0].v;
+  CHECK((slope == 0.0 || slope == 2.0));
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  for (const auto& [x, y] : {std::pair{nan, 1.0}, std::pair{1.0, nan}}) CHECK(std::isnan(at(x, y)[0].v.v + at(x, y)[1].v.v));
+  CHECK(std::isnan(at(nan, 1.0)[2].v.v));
+  for (const auto& c : f.corners(std::vector{2.0, 1.0})) CHECK(std::abs(c.distance) == (c.op == Step::Op::sign ? 2.0 : 3.0));
+  // Fixed numbers put into a field, and the slopes of a conserved maximum.
+  const VectorField fixed = f.rebound({0, 3.0}, 1);
+  double in = 2.0, out[3];
+  fixed.evaluate<double>({&in, 1}, out);
+  CHECK(out[0] == 4.0);
+  CHECK(out[1] == 3.0);
 }
 
 TEST_CASE("names of inputs hide the constants of the reader") {
@@ -320,7 +386,7 @@ TEST_CASE("bad text gives one line with the equation's number") {
   CHECK(refusal({"()"}) == "equation 1: a value is missing before ')' at character 2");
   CHECK(refusal({"sin x"}) == "equation 1: function sin needs parentheses: sin(...)");
   CHECK(refusal({"sin + x"}) == "equation 1: function sin needs parentheses: sin(...)");
-  CHECK(refusal({"sin(x, y)"}) == "equation 1: ',' at character 6 is not understood");
+  CHECK(refusal({"sin(x, y)"}) == "equation 1: function sin takes one value");
   CHECK(refusal({"x = y"}) == "equation 1: '=' at character 3 is not understood");
   CHECK(refusal({"x\xc2\xb2"}) == "equation 1: a character that is not plain text at character 2");
   CHECK(refusal({"1.2.3"}) == "equation 1: not a number at character 1");

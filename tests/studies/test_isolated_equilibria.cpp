@@ -141,6 +141,15 @@ TEST_CASE("corners are said, and nothing grinds", "[isolated]") {
   CHECK(tent.subtypes[0] == "corner");
   CHECK(std::abs(tent.parameter[0]) < 1e-9);
   CHECK(tent.ran.err.find("abs(") != std::string::npos);
+  // The same tent by other functions; and a jump, which no branch crosses.
+  for (const auto& [rhs, word] :
+       {std::pair{"p - max(x, -x)", "max("}, std::pair{"p + min(x, 0 - x)", "min("}, std::pair{"p + sign(x) - x", "sign("}}) {
+    const std::string model = fmt::format("variables = [\"x\"]\nparameters = {{ p = 1.0 }}\nrhs = [\"{}\"]\ninitial = [1.0]\n", rhs);
+    const Result r = run(f, study(model, "p", "[-2.0, 1.0]"), "p");
+    INFO(rhs << ": " << r.ran.err);
+    CHECK(r.ran.err.find(word) != std::string::npos);
+    CHECK((r.ran.err.find("corner") != std::string::npos || r.ran.err.find("not connected") != std::string::npos));
+  }
   // Chua's piecewise linear circuit in the slope between the corners: at m0 = -1 every |x| <= 1 is at rest.
   const std::string chua =
       "variables = [\"x\", \"y\", \"z\"]\nparameters = { al = 9.0, be = 14.0, m0 = -0.5, m1 = -0.714 }\n"
