@@ -246,9 +246,10 @@ void warn_of_unresolved(const continuation::Branch& b, RunContext& context) {
 }
 
 // `why` a run that is not whole is not: its last line on standard error, whatever was warned of before.
-ExitStatus end_run(ResultFile& file, RunContext& context, ExitStatus status, const std::vector<std::string>& reasons, const std::string& why) {
+ExitStatus end_run(ResultFile& file, RunContext& context, ExitStatus status, std::vector<std::string> reasons, const std::string& why) {
   end_begins();
   if (interrupted) status = ExitStatus::stopped_by_user;
+  if (interrupted && reasons.empty()) reasons.emplace_back(interrupted_outcome);
   const std::string outcome = status == ExitStatus::ok ? "complete" : interrupted ? "interrupted" : "partial";
   context.report.put("stop_reasons", Json::array(reasons)).put("warnings", Json::array(context.warnings)).put("outcome", outcome);
   file.attribute("/study", "stop_reasons", reasons);

@@ -3,8 +3,8 @@
 ///     WHIRL_FAULT=before|half|after|full|count WHIRL_FAULT_AT=17 WHIRL_FAULT_LOG=log LD_PRELOAD=libwhirl_write_faults.so whirl run ...
 ///
 /// Changes are counted from 1: writes at a place in a file, renaming, truncating, flushing to the disk. `before`, `half` and `after` kill around the
-/// chosen one; `full` lets no file grow from it on. The log gets "changes commits refused"
-/// (a commit is a write of 48 bytes at 0; refused are writes that found the disk full) at the end or at the kill.
+/// chosen one; `full` lets no file grow from it on. The log gets "changes commits refused renames" at the end or at the kill: a commit is a write of
+/// 48 bytes at 0, refused are writes that found the disk full.
 
 #include <dlfcn.h>
 #include <fcntl.h>
@@ -23,7 +23,7 @@ namespace {
 
 constexpr size_t whole_writes = 512;  // what the kernel copies in one piece: a kill comes before or after
 
-std::atomic<long> changes{0}, commits{0}, refused{0};
+std::atomic<long> changes{0}, commits{0}, refused{0}, renames{0};
 
 const char* setting(const char* name) {
   const char* value = std::getenv(name);
@@ -36,7 +36,7 @@ void write_log() {
   const int fd = ::open(setting("WHIRL_FAULT_LOG"), O_WRONLY | O_CREAT | O_TRUNC, 0666);
   if (fd < 0) return;
   char text[96];
-  const int n = std::snprintf(text, sizeof text, "%ld %ld %ld\n", changes.load(), commits.load(), refused.load());
+  const int n = std::snprintf(text, sizeof text, "%ld %ld %ld %ld\n", changes.load(), commits.load(), refused.load(), renames.load());
   (void)!::write(fd, text, static_cast<size_t>(n));
   ::close(fd);
 }
@@ -95,7 +95,11 @@ extern "C" {
 ssize_t pwrite(int fd, const void* data, size_t size, off_t at) { return change_write(fd, data, size, at); }
 ssize_t pwrite64(int fd, const void* data, size_t size, off_t at) { return change_write(fd, data, size, at); }
 int rename(const char* from, const char* to) noexcept {
-  return change([&] { return next<int (*)(const char*, const char*)>("rename")(from, to); });
+  return change([&] {
+    const int result = next<int (*)(const char*, const char*)>("rename")(from, to);
+    if (result == 0) ++renames;
+    return result;
+  });
 }
 int ftruncate(int fd, off_t size) noexcept {
   return change([&] { return next<int (*)(int, off_t)>("ftruncate")(fd, size); });
