@@ -291,7 +291,10 @@ bool Network::is_solution(const Branch& branch) const {
 
 const std::vector<SignedPermutation>& Network::group() {
   const auto& w = options_.walk;
-  if (!group_) group_ = symmetries(problem_, {.size = size_ > 0.0 ? size_ : unit_at(branches_.front().u(0)), .lower = w.lower, .upper = w.upper});
+  if (!group_) {
+    const Vector at = branches_.empty() ? junctions_.front().point.u : branches_.front().u(0);  // none yet where a doubled family begins
+    group_ = symmetries(problem_, {.size = size_ > 0.0 ? size_ : unit_at(at), .lower = w.lower, .upper = w.upper});
+  }
   return *group_;
 }
 
