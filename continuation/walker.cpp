@@ -722,7 +722,13 @@ bool Walker::close_loop() {
     if (apart > 0.05 * s.step_taken || s.curve.dot(s.now->tangent, s.start_tangent) < 0.95) return false;
     s.arclength += s.curve.length(s.start_u - s.now->u);
     s.branch.append(s.start_u, s.start_tangent, s.arclength, s.branch.residual(0), s.step, 0, s.branch.n_unstable(0), &s.eigenvalues);
-    std::erase_if(s.branch.special, [&s](const SpecialPoint& e) { return e.arclength > s.arclength - 1e-6; });
+    // A branch that left upright comes back upright: its turn there is no fold, and rounding may have found it beside the point.
+    constexpr double beside = 1e-4;  // in the metric
+    const bool upright_start = std::abs(s.start_tangent[n]) < leaving.upright * s.curve.p_scale();
+    std::erase_if(s.branch.special, [&](const SpecialPoint& e) {
+      const bool turn = upright_start && e.type == EventType::fold && e.arclength > s.arclength - s.step_taken;
+      return e.arclength > s.arclength - 1e-6 || (turn && s.curve.length(e.u - s.start_u) < beside);
+    });
     s.stop = StopReason::closed_loop;
     return true;
   }
