@@ -37,7 +37,7 @@ class ResultTree {
   void extend_column(const std::string& group, const std::string& name, const std::vector<std::string>& values, const TextAttributes& attributes);
 
   bool holds_columns() const { return holds_columns_; }
-  bool changed() const;  ///< since the last commit
+  bool changed() const;                                            ///< since the last commit
   const AttributeValue* attribute(const std::string& name) const;  ///< of /study; nothing if it has none
 
   void commit();
