@@ -60,6 +60,17 @@ std::optional<AveragedSolution> nearest_stable(const Ansatz& ansatz, const std::
   return best;
 }
 
+// A stable averaged solution is a motion of its own kind; amplitudes are of first order and decide between solutions only.
+std::string contradiction_of(const Ansatz& ansatz, const IntegratedRun& run) {
+  const SteadyMotion& m = run.motion;
+  if (!run.told || !run.told->stable || m.record.cols() == 0) return "";
+  if (m.kind == MotionKind::quasi_periodic || m.kind == MotionKind::chaotic) return fmt::format("settles on a {} motion", to_string(m.kind));
+  if (m.kind != MotionKind::periodic) return "";  // has not settled, which is reported as such
+  if (ansatz.nu % m.multiple != 0) return fmt::format("settles on a motion of {} excitation periods", m.multiple);
+  if (!run.averaged) return "settles on a motion that no stable solution is like";
+  return run.averaged->u != run.told->u ? fmt::format("settles nearer to another stable solution, of {}", run.averaged->branch) : "";
+}
+
 Matrix transient_of(const models::ModalSystem<double>& system, const Vector& start, const IntegrationOptions& o) {
   const int n = system.size(), total = o.transient_periods * IntegrationOptions::transient_samples;
   const auto flow = [&system](double t, std::span<const double> y, std::span<double> d) { system.flow<double>(system.omega * t, y, d); };
@@ -151,11 +162,14 @@ std::vector<IntegratedRun> integrate_beside(const ForcedSystem& forced, const Av
   std::vector<IntegratedRun> runs;
   std::vector<std::size_t> frequency;
   const auto add = [&](std::size_t w, const Vector& y, const std::string& name, bool at_rest) {
-    runs.push_back({omegas[w], off_symmetry(forced, y, o.perturbation), name, at_rest, {}, std::nullopt, {}});
+    runs.push_back({omegas[w], off_symmetry(forced, y, o.perturbation), name, at_rest, {}, std::nullopt, {}, std::nullopt, {}});
     frequency.push_back(w);
   };
   for (std::size_t w = 0; w < omegas.size(); ++w) {
-    for (const auto& s : solutions[w]) add(w, averaged.motion(s.u, 0.0), fmt::format("{} ({})", s.branch, s.stable ? "stable" : "unstable"), false);
+    for (const auto& s : solutions[w]) {
+      add(w, averaged.motion(s.u, 0.0), fmt::format("{} ({})", s.branch, s.stable ? "stable" : "unstable"), false);
+      runs.back().told = s;
+    }
     for (const auto& start : o.starts) {
       Vector y = Vector::Zero(2 * n);
       std::string name;
@@ -175,6 +189,7 @@ std::vector<IntegratedRun> integrate_beside(const ForcedSystem& forced, const Av
     runs[i].motion = models::settle(system, runs[i].start, settle_options);
     if (runs[i].at_rest) runs[i].transient = transient_of(system, runs[i].start, o);
     if (runs[i].motion.record.cols() > 0) runs[i].averaged = nearest_stable(averaged.ansatz, solutions[frequency[i]], runs[i].motion);
+    runs[i].contradiction = contradiction_of(averaged.ansatz, runs[i]);
     context.progress.show(fmt::format("verification: {} of {} runs", ++done, runs.size()));
   });
   std::erase_if(runs, [](const IntegratedRun& r) { return r.motion.record.cols() == 0 && r.motion.why.empty(); });  // not begun
@@ -242,6 +257,9 @@ std::vector<std::string> not_settled(const std::vector<IntegratedRun>& runs) {
   for (const auto& r : runs)
     if (r.motion.kind == MotionKind::unsettled || r.motion.kind == MotionKind::failed || r.motion.kind == MotionKind::diverging)
       failures.push_back(fmt::format("omega = {:g}, {}: {}", r.omega, r.start_name, r.motion.why));
+    else if (!r.contradiction.empty())
+      failures.push_back(
+          fmt::format("verification contradicts {} at omega = {:g}: the motion that starts there {}", r.start_name, r.omega, r.contradiction));
   return failures;
 }
 

@@ -21,8 +21,10 @@ struct IntegratedRun {
   std::string start_name;
   bool at_rest;  ///< started from rest, not from an averaged state
   models::SteadyMotion motion;
-  std::optional<AveragedSolution> averaged;  ///< the nearest stable one that moves in the same coordinates, with fractions of omega or without
-  Matrix transient;                          ///< coordinates x samples, from the start on
+  std::optional<AveragedSolution> averaged;   ///< the nearest stable one that moves in the same coordinates, with fractions of omega or without
+  Matrix transient;                           ///< coordinates x samples, from the start on
+  std::optional<AveragedSolution> told = {};  ///< the averaged solution that it started from
+  std::string contradiction = {};             ///< what the motion says against that one, if it is stable; "" nothing
 };
 
 struct IntegrationOptions {
@@ -46,7 +48,7 @@ void write_averaged(ResultFile& file, const ForcedSystem& forced, const Averaged
                     const std::vector<std::vector<AveragedSolution>>& solutions);
 /// /verification/runs, series, spectra, transients.
 void write_integrated(ResultFile& file, const ForcedSystem& forced, const AveragedEquations& averaged, const std::vector<IntegratedRun>& runs);
-/// A line for each run that did not settle or could not be integrated.
+/// A line for each run that did not settle or could not be integrated, and for each that left the stable solution where it started.
 std::vector<std::string> not_settled(const std::vector<IntegratedRun>& runs);
 /// "verification": a row a run.
 void report_integrated(Json& results, const ForcedSystem& forced, const AveragedEquations& averaged, const std::vector<IntegratedRun>& runs);

@@ -39,6 +39,22 @@ std::optional<AveragedState> nearest_stable(const models::SuperharmonicFlow& flo
   return best;
 }
 
+// The averaged state is a motion of the excitation's period, in plane or whirling. Amplitudes are of first order: they decide between states only.
+std::string contradiction_of(const models::SuperharmonicFlow& flow, const AveragedState& told, const std::vector<AveragedState>& states,
+                             const SteadyMotion& m, int order) {
+  constexpr double moves = 1e-3;  // of the larger amplitude
+  if (!told.stable || m.record.cols() == 0) return "";
+  if (m.kind == MotionKind::periodic && m.multiple > 1) return fmt::format("settles on a motion of {} excitation periods", m.multiple);
+  if (m.kind == MotionKind::quasi_periodic || m.kind == MotionKind::chaotic) return fmt::format("settles on a {} motion", to_string(m.kind));
+  if (m.kind != MotionKind::periodic) return "";  // has not settled, which is reported as such
+  const auto whirls = [&](const Vector& q) { return q[0] > moves * q.maxCoeff(); };
+  const auto o = flow.observe(told.u);
+  const bool told_whirling = whirls(Eigen::Vector2d(o.A, o.B)), whirling = whirls(m.record.topRows(2).rowwise().lpNorm<Eigen::Infinity>());
+  if (told_whirling != whirling) return whirling ? "settles whirling" : "settles in plane";
+  const auto nearest = nearest_stable(flow, states, m, order);
+  return nearest && nearest->u != told.u ? fmt::format("settles nearer to another stable state, of {}", nearest->branch) : "";
+}
+
 std::vector<Column> harmonic_columns(const std::vector<VerificationRun>& runs) {
   std::vector<Column> table;
   for (int i = 0; i < 2; ++i)
@@ -88,7 +104,8 @@ std::vector<VerificationRun> verify(const models::SuperharmonicFlow& flow, const
     auto settle_options = o.settle;
     settle_options.interrupted = &interrupted;
     runs[i].motion = models::settle(system_at(o, runs[i].omega), runs[i].start, settle_options);
-    if (!runs[i].averaged && runs[i].motion.record.cols() > 0) runs[i].averaged = nearest_stable(flow, states[frequency[i]], runs[i].motion, o.order);
+    if (runs[i].averaged) runs[i].contradiction = contradiction_of(flow, *runs[i].averaged, states[frequency[i]], runs[i].motion, o.order);
+    else if (runs[i].motion.record.cols() > 0) runs[i].averaged = nearest_stable(flow, states[frequency[i]], runs[i].motion, o.order);
     context.progress.show(fmt::format("verification: {} of {} runs", ++done, runs.size()));
   });
   std::erase_if(runs, [](const VerificationRun& r) { return r.motion.record.cols() == 0 && r.motion.why.empty(); });  // not begun
@@ -119,6 +136,9 @@ std::vector<std::string> not_settled(const std::vector<VerificationRun>& runs) {
   for (const auto& r : runs)
     if (r.motion.kind == MotionKind::unsettled || r.motion.kind == MotionKind::failed || r.motion.kind == MotionKind::diverging)
       failures.push_back(fmt::format("omega = {:g}, {}: {}", r.omega, r.start_name, r.motion.why));
+    else if (!r.contradiction.empty())
+      failures.push_back(
+          fmt::format("verification contradicts {} at omega = {:g}: the motion that starts there {}", r.start_name, r.omega, r.contradiction));
   return failures;
 }
 

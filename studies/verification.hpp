@@ -23,6 +23,7 @@ struct VerificationRun {
   std::string start_name;
   std::optional<AveragedState> averaged;  ///< the start's own state, or the nearest stable one afterwards
   models::SteadyMotion motion;
+  std::string contradiction = {};  ///< what the motion says against the stable state that it started from; "" nothing
 };
 
 struct VerificationOptions {
@@ -42,7 +43,7 @@ std::vector<VerificationRun> verify(const models::SuperharmonicFlow& flow, const
 /// Steady motions while the frequency rises or falls from point to point, each starting where the one before ended.
 std::vector<VerificationRun> sweep(const std::vector<double>& omegas, const VerificationOptions& options, RunContext& context);
 
-/// A line for each run that did not settle or could not be integrated.
+/// A line for each run that did not settle or could not be integrated, and for each that left the stable state where it started.
 std::vector<std::string> not_settled(const std::vector<VerificationRun>& runs);
 
 void write_runs(ResultFile& file, const std::vector<VerificationRun>& runs, const models::SuperharmonicFlow& flow, int order);
