@@ -158,9 +158,9 @@ TEST_CASE("coupled cells: all states that leave a multiple zero, images included
   struct Case {
     int n;
     double c;
-    std::size_t states;  // at a = 0.3, counted by Newton from 20000 starts without this program
+    std::size_t states;  // at a = 0.3, by Newton from 20000 starts; 81: by the roots of x^3 - a x + s, s = c sum(x), in all numbers of each
   };
-  for (const auto& [n, c, count] : std::vector<Case>{{3, 1.0, 13}, {3, 0.5, 13}, {3, 4.0, 13}, {4, 1.0, 27}}) {
+  for (const auto& [n, c, count] : std::vector<Case>{{3, 1.0, 13}, {3, 0.5, 13}, {3, 4.0, 13}, {4, 1.0, 27}, {5, 1.0, 81}}) {
     const EquilibriumFlow f = cells(n, c).flow({"a"});
     Network net(f, {.walk = {.lower = -1.0, .upper = 0.5}});
     Vector start = Vector::Zero(n + 1);
