@@ -77,7 +77,7 @@ TEST_CASE("wide ranges: twice the third frequency is not passed over, whatever l
 
 TEST_CASE("wide ranges: steps fifteen times shorter find no more") {
   int events = 0;
-  for (unsigned seed = 300; seed < 306; ++seed) events += compare_steps(seed, 3, 1.6, 20.0);
+  for (unsigned seed = 300; seed < 302; ++seed) events += compare_steps(seed, 3, 1.6, 20.0);
   CHECK(events > 20);
   CHECK(compare_steps(237, 1, 0.12, 5.0) == 4);  // damping ratio 1e-4: no step leads from one side of the primary resonance to the other
 }
