@@ -4,7 +4,7 @@
 ///     VectorField f({"mu*x - x^3"}, {"x", "mu"});
 ///     f.evaluate<double>(inputs, out);                 // and in Dual or nested Dual: derivatives are exact
 ///
-/// GiNaC reads the text; its tree is turned once into a flat list of steps that runs in any scalar, common parts once.
+/// The tree of the text is turned once into a flat list of steps that runs in any scalar, common parts once.
 /// Accepted: names, decimal numbers, pi, + - * / ^ ( ), exp log sin cos tan sinh cosh tanh atan sqrt abs sign max min. `^` is power
 /// (expression_power.hpp): by its value also where the exponent is a parameter that happens to be whole, one-sided at 0, NaN for other powers of
 /// negative numbers. A number in the text is the nearest double; numbers are combined in double. A sign behind an operator, and x^y^z, need

@@ -15,17 +15,9 @@ namespace {
 constexpr std::size_t max_length = 20000;  // of one equation; with max_depth it keeps the recursions below far from the end of the stack
 constexpr int max_depth = 200;
 
-// GiNaC has no maximum, minimum and sign that keep still: those of expression.cpp have names of their own.
-constexpr Function functions[] = {{"exp", "exp", Op::exp},        {"log", "log", Op::log},       {"sin", "sin", Op::sin},
-                                  {"cos", "cos", Op::cos},        {"tan", "tan", Op::tan},       {"sinh", "sinh", Op::sinh},
-                                  {"cosh", "cosh", Op::cosh},     {"tanh", "tanh", Op::tanh},    {"atan", "atan", Op::atan},
-                                  {"sqrt", "sqrt", Op::sqrt},     {"abs", "abs", Op::abs},       {"sign", "signum", Op::sign},
-                                  {"max", "maximum", Op::max, 2}, {"min", "minimum", Op::min, 2}};
-
-const Function* function(std::string_view name) {
-  const auto it = std::find_if(std::begin(functions), std::end(functions), [&](const Function& f) { return f.name == name; });
-  return it == std::end(functions) ? nullptr : it;
-}
+constexpr Function functions[] = {{"exp", Op::exp},   {"log", Op::log},   {"sin", Op::sin},    {"cos", Op::cos},   {"tan", Op::tan},
+                                  {"sinh", Op::sinh}, {"cosh", Op::cosh}, {"tanh", Op::tanh},  {"atan", Op::atan}, {"sqrt", Op::sqrt},
+                                  {"abs", Op::abs},   {"sign", Op::sign}, {"max", Op::max, 2}, {"min", Op::min, 2}};
 
 // ASCII only, whatever the locale.
 bool letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; }
@@ -119,8 +111,8 @@ class Scanner {
     const std::string_view name = text_.substr(at_, end - at_);
     const auto input = std::find(inputs_.begin(), inputs_.end(), name);
     if (input != inputs_.end()) value(name, fmt::format("v{:05}", input - inputs_.begin()));
-    else if (const Function* f = function(name)) {
-      value(name, std::string(f->in_ginac));
+    else if (const Function* f = function_named(name)) {
+      value(name, std::string(name));
       previous_ = Before::function;
       called_ = f;
     } else if (name == "pi") {
@@ -209,12 +201,12 @@ class Scanner {
 
 }  // namespace
 
-const Function* function_in_ginac(std::string_view name) {
-  const auto it = std::find_if(std::begin(functions), std::end(functions), [&](const Function& f) { return f.in_ginac == name; });
+const Function* function_named(std::string_view name) {
+  const auto it = std::find_if(std::begin(functions), std::end(functions), [&](const Function& f) { return f.name == name; });
   return it == std::end(functions) ? nullptr : it;
 }
 
-std::string text_for_ginac(std::string_view text, int equation, const std::vector<std::string>& inputs, std::vector<double>& numbers) {
+std::string checked_text(std::string_view text, int equation, const std::vector<std::string>& inputs, std::vector<double>& numbers) {
   return Scanner(text, equation, inputs, numbers).rewritten();
 }
 
@@ -223,7 +215,7 @@ void check_names(const std::vector<std::string>& inputs) {
     const std::string& name = inputs[i];
     const bool well_formed = !name.empty() && letter(name[0]) && std::all_of(name.begin(), name.end(), [](char c) { return letter(c) || digit(c); });
     if (!well_formed) throw ExpressionError(0, fmt::format("'{}' is no name: letters, digits and _ only, a letter first", name));
-    if (function(name)) throw ExpressionError(0, fmt::format("'{}' is the name of a function", name));
+    if (function_named(name)) throw ExpressionError(0, fmt::format("'{}' is the name of a function", name));
     if (std::find(inputs.begin(), inputs.begin() + static_cast<std::ptrdiff_t>(i), name) != inputs.begin() + static_cast<std::ptrdiff_t>(i))
       throw ExpressionError(0, fmt::format("the name '{}' is given twice", name));
   }

@@ -1,7 +1,6 @@
 #pragma once
-/// Inside of VectorField: what an equation may hold, checked token by token and written for GiNaC in names of our own: input 3 becomes v00003,
-/// number 3 c3. So GiNaC never computes with the user's numbers, whose digits it would round to decimal places and whose powers it would expand
-/// without limit, and no input is taken for one of its constants.
+/// Inside of VectorField: what an equation may hold, checked token by token and written in names of our own, a space behind each token: input 3
+/// becomes v00003, number 3 c3. expression_tree.hpp reads it.
 
 #include <string>
 #include <string_view>
@@ -12,14 +11,14 @@
 namespace whirl::models::detail {
 
 struct Function {
-  std::string_view name, in_ginac;
+  std::string_view name;
   Step::Op op;
   int arguments = 1;
 };
-const Function* function_in_ginac(std::string_view name);  ///< null if there is none
+const Function* function_named(std::string_view name);  ///< null if there is none
 
 /// Throws ExpressionError; `numbers` takes what c0, c1, ... stand for.
-std::string text_for_ginac(std::string_view text, int equation, const std::vector<std::string>& inputs, std::vector<double>& numbers);
+std::string checked_text(std::string_view text, int equation, const std::vector<std::string>& inputs, std::vector<double>& numbers);
 
 /// Throws ExpressionError (of equation 0) for an input whose name is none, or is given twice.
 void check_names(const std::vector<std::string>& inputs);
