@@ -48,11 +48,15 @@ Vector sizes(const Curve& curve, const AugmentedSystem& system, In start, In u, 
   return all;
 }
 
-// Is the last unknown, beta of a branch point, zero up to rounding? Then two curves cross and do not just come near.
-bool persists(In y, const Vector& units) {
-  constexpr double rounding = 1e-8;
-  const Eigen::Index beta = units.size() - 1;
-  return std::abs(y[beta]) <= rounding * units[beta];
+// Is the last unknown, beta of a branch point, zero up to rounding of the terms at hand? Then two curves cross and do not just come near.
+bool persists(const Curve& curve, In y, const Vector& units, In u) {
+  constexpr double rounding = 1e-8, least_terms = 1e-3;  // all terms may vanish at the very point
+  const Problem& f = curve.problem();
+  const Eigen::Index n = f.size(), beta = units.size() - 1;
+  Matrix j(n, n + f.parameters());
+  f.jacobian(u, j);
+  const double terms = std::max((j.leftCols(n).cwiseAbs() * u.head(n).cwiseAbs()).maxCoeff(), curve.p_scale() * j.col(n).lpNorm<Eigen::Infinity>());
+  return std::abs(y[beta]) <= rounding * std::clamp(terms, least_terms * units[beta], units[beta]);
 }
 
 std::unique_ptr<AugmentedSystem> torus_system(const Curve& curve, int group, const Sample& near) {
@@ -81,8 +85,9 @@ bool branch_point_of_state(const Curve& curve, const Sample& near, SpecialPoint&
   if (!start.allFinite()) return false;
   const Vector units = sizes(curve, system, start, near.u, 1);
   const NewtonResult r = newton_in_units(system, start, units, {.tolerance = 1e-13, .max_iterations = 12});
-  if (!r.settled() || !persists(r.x, units)) return false;
+  if (!r.settled()) return false;
   const Vector found = system.base_point(r.x), u = whole ? found : own.lifted(found);
+  if (!persists(curve, r.x, units, u)) return false;
   if (is_multiple(curve, u)) return false;
   out = {};
   out.type = EventType::branch_point;

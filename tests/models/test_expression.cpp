@@ -135,7 +135,7 @@ TEST_CASE("maximum, minimum and sign") {
   }
 }
 
-TEST_CASE("slopes beside and on corners are those of one side; no number stays none") {
+TEST_CASE("slopes beside and on corners are those of one side, no number stays none") {
   using D = Dual<Dual<double, 1>, 2>;
   const VectorField f({"max(x^2, y)", "min(x^2, y)", "sign(x)*x^2"}, {"x", "y"});
   const auto at = [&](double x, double y) {

@@ -74,7 +74,7 @@ TEST_CASE("odd input takes one short line", "[refusal]") {
                                                          {"\"p + x^n\"", "\"p + x^" + std::string(5000, '9') + "\""},
                                                          {"\"p + x^n\"", "\"p + x^(\""},
                                                          {"\"p + x^n\"", "\"p + (x))\""},
-                                                         {"\"p + x^n\"", "\"p + max(x, 0)\""},
+                                                         {"\"p + x^n\"", "\"p + floor(x)\""},
                                                          {"\"p + x^n\"", "\"" + many + "\""},
                                                          {"\"p + x^n\"", "\"\""},
                                                          {"\"p + x^n\"", "\"p + \\u0000x\""},
