@@ -1,4 +1,5 @@
-// Lyapunov spectra (Ueda's exponent: [Sprott2003]) against closed forms, mean divergences, and the published and recomputed exponents of classic systems.
+// Lyapunov spectra against closed forms, mean divergences, and the published and recomputed exponents of classic systems
+// (Ueda's exponent: [Sprott2003]).
 #include <catch2/catch.hpp>
 
 #include "models/dynamics/time/lyapunov_spectrum.hpp"
