@@ -20,28 +20,32 @@ int carrier(const ModalSystem<double>& system, const Ansatz& ansatz, int coordin
   return best;
 }
 
-// Displacements of the physical motion, `options.samples` a period, from half a window before t = 0 (by running backwards) to half a window after the
-// end.
-Matrix displacements(const ModalSystem<double>& system, const Vector& y0, int before, int total, double step, const IntegratorOptions& options,
+// Displacements of the physical motion at `count` instants from t = 0 on; fewer, and `why`, where it does not go on.
+Matrix displacements(const ModalSystem<double>& system, const Vector& y0, int count, double step, const IntegratorOptions& options,
                      std::string& why) {
   const int n = system.size();
-  Matrix q(n, before + total);
-  q.col(before) = y0.head(n);
-  for (const int way : {-1, 1}) {
-    const auto flow = [&](double t, std::span<const double> y, std::span<double> d) {
-      system.flow<double>(system.omega * way * t, y, d);
-      for (double& x : d) x *= way;
-    };
-    Integrator run(flow, 0.0, y0, options);
-    for (int j = 1; j <= (way < 0 ? before : total - 1); ++j) {
-      if (!run.advance(step * j)) {
-        why = run.why();
-        return q.leftCols(way < 0 ? 0 : before + j);
-      }
-      q.col(before + way * j) = run.state().head(n);
+  Matrix q(n, count);
+  q.col(0) = y0.head(n);
+  const auto flow = [&](double t, std::span<const double> y, std::span<double> d) { system.flow<double>(system.omega * t, y, d); };
+  Integrator run(flow, 0.0, y0, options);
+  for (int j = 1; j < count; ++j) {
+    if (!run.advance(step * j)) {
+      why = run.why();
+      return q.leftCols(j);
     }
+    q.col(j) = run.state().head(n);
   }
   return q;
+}
+
+// Harmonic k over the window of `window` steps whose middle is instant `middle`, by the trapezoidal rule: exact for harmonics of steady amplitude.
+std::complex<double> demodulated(const Matrix& q, int coordinate, int k, int middle, int window) {
+  std::complex<double> sum = 0.0;
+  for (int j = middle - window / 2; j <= middle + window / 2; ++j) {
+    const double weight = std::abs(j - middle) == window / 2 ? 0.5 : 1.0;
+    sum += weight * q(coordinate, j) * std::polar(1.0, -k * two_pi / window * j);
+  }
+  return sum * ((k > 0 ? 2.0 : 1.0) / window);
 }
 
 }  // namespace
@@ -52,7 +56,7 @@ void ModulationOptions::validate() const {
 }
 
 double Modulation::difference() const {
-  const double size = integrated.size() > 0 ? integrated.cwiseAbs().maxCoeff() : 0.0;
+  const double size = averaged.size() > 0 ? averaged.cwiseAbs().maxCoeff() : 0.0;
   return size > 0.0 ? (integrated - averaged).cwiseAbs().maxCoeff() / size : 0.0;
 }
 
@@ -78,9 +82,9 @@ Modulation modulation(const ModalSystem<double>& system, const AveragedFlow& ave
   Modulation m;
   for (int i = 0; i < ansatz.coordinates(); ++i)
     for (const int k : ansatz.harmonics[static_cast<std::size_t>(i)]) m.rows.emplace_back(i, k);
-  const int window = o.samples * ansatz.nu, half = window / 2, instants = o.periods * o.samples + 1;
+  const int window = o.samples * ansatz.nu, half = window / 2, last = o.periods * o.samples;
   const double step = two_pi / system.omega / o.samples;
-  const Matrix q = displacements(system, y0, half, instants + half, step, o.integrator, m.why);
+  const Matrix q = displacements(system, y0, last + 1, step, o.integrator, m.why);
   Vector x = averaged_start(system, averaged, p, y0), u(x.size() + p.size());
   u.tail(p.size()) = p;
   const auto flow = [&](double, std::span<const double> y, std::span<double> d) {
@@ -89,13 +93,15 @@ Modulation modulation(const ModalSystem<double>& system, const AveragedFlow& ave
   };
   Integrator run(flow, 0.0, x, o.integrator);
   const auto count = static_cast<Eigen::Index>(m.rows.size());
-  m.t.resize(instants);
-  m.integrated.resize(count, instants);
-  m.averaged.resize(count, instants);
-  int done = 0;
-  for (; done < instants && done + window < q.cols(); ++done) {
-    m.t[done] = step * done;
-    if (done > 0 && !run.advance(m.t[done])) {
+  const auto most = std::max<Eigen::Index>(0, q.cols() - window);
+  m.t.resize(most);
+  m.integrated.resize(count, most);
+  m.averaged.resize(count, most);
+  Eigen::Index done = 0;
+  for (; done < most; ++done) {
+    const int middle = half + static_cast<int>(done);
+    m.t[done] = step * middle;
+    if (!run.advance(m.t[done])) {
       m.why = run.why();
       break;
     }
@@ -103,12 +109,7 @@ Modulation modulation(const ModalSystem<double>& system, const AveragedFlow& ave
     for (Eigen::Index r = 0; r < count; ++r) {
       const auto [i, k] = m.rows[static_cast<std::size_t>(r)];
       m.averaged(r, done) = amplitude(ansatz, x, i, k);
-      std::complex<double> sum = 0.0;  // trapezoidal rule over the window about t: exact for harmonics of steady amplitude
-      for (int j = -half; j <= half; ++j) {
-        const double weight = j == -half || j == half ? 0.5 : 1.0, angle = k * two_pi / window * (done + j);
-        sum += weight * q(i, half + done + j) * std::polar(1.0, -angle);
-      }
-      m.integrated(r, done) = sum * ((k > 0 ? 2.0 : 1.0) / window);
+      m.integrated(r, done) = demodulated(q, i, k, middle, window);
     }
   }
   m.t.conservativeResize(done);
