@@ -41,7 +41,9 @@ GaussStep::GaussStep(const Problem& flow, int columns)
       rhs_(stages * n_),
       delta_(stages * n_),
       f_(n_),
+      along_(n_ + parameters_),
       block_(stages * n_, stages * n_),
+      dk_v_(n_, stages),
       second_(n_, n_ + parameters_),
       y_(stages, Vector(n_)),
       dy_v_(stages, Vector(n_)),
@@ -172,20 +174,21 @@ void GaussStep::first(Matrix& dx, In dh) {
 // With J dY + f_p dp = dK once more differentiated along v:
 //     d2K_i = D2f[(dY_v, dp_v), (dY, dp)] + J_i d2Y_i,   d2Y_i = d2x + sum_j a_ij (h d2K_j + dh_v dK_j + dh dK_j,v + d2h K_j)
 void GaussStep::second(Vector& dx_v, double dh_v, In dp_v, Matrix& ddx, In ddh) {
-  Matrix dk_v(n_, stages);
-  Vector right = Vector::Zero(stages * n_);
+  Matrix& dk_v = dk_v_;
+  Vector& right = rhs_;
   for (int i = 0; i < stages; ++i) {
-    Vector start = dx_v;
+    Vector& start = dy_v_[static_cast<std::size_t>(i)];
+    start = dx_v;
     for (int j = 0; j < stages; ++j) start += (a[i][j] * dh_v) * memory_->k.col(j);
     const Matrix& jacobian = memory_->jacobian[static_cast<std::size_t>(i)];
-    right.segment(i * n_, n_) = jacobian.leftCols(n_) * start + jacobian.rightCols(parameters_) * dp_v;
-    dy_v_[static_cast<std::size_t>(i)] = start;
+    right.segment(i * n_, n_).noalias() = jacobian.leftCols(n_) * start;
+    right.segment(i * n_, n_).noalias() += jacobian.rightCols(parameters_) * dp_v;
   }
-  right = memory_->lu.solve(right);
-  for (int i = 0; i < stages; ++i) dk_v.col(i) = right.segment(i * n_, n_);
+  delta_ = memory_->lu.solve(right);
+  for (int i = 0; i < stages; ++i) dk_v.col(i) = delta_.segment(i * n_, n_);
   for (int i = 0; i < stages; ++i)
     for (int j = 0; j < stages; ++j) dy_v_[static_cast<std::size_t>(i)] += (h_ * a[i][j]) * dk_v.col(j);
-  Vector along(n_ + parameters_);
+  Vector& along = along_;
   along.tail(parameters_) = dp_v;
   for (int i = 0; i < stages; ++i) {
     const auto at = static_cast<std::size_t>(i);
@@ -193,13 +196,14 @@ void GaussStep::second(Vector& dx_v, double dh_v, In dp_v, Matrix& ddx, In ddh) 
     ddy = ddx;
     for (int j = 0; j < stages; ++j) {
       ddy += (a[i][j] * dh_v) * dk_[static_cast<std::size_t>(j)];
-      ddy += (a[i][j] * dk_v.col(j)) * dh_.transpose();
-      ddy += (a[i][j] * memory_->k.col(j)) * ddh.transpose();
+      ddy.noalias() += (a[i][j] * dk_v.col(j)) * dh_.transpose();
+      ddy.noalias() += (a[i][j] * memory_->k.col(j)) * ddh.transpose();
     }
     u_.head(n_) = y_[at];
     along.head(n_) = dy_v_[at];
     flow_.second(u_, along, second_);
-    right_.middleRows(i * n_, n_) = second_.leftCols(n_) * dy_[at] + memory_->jacobian[at].leftCols(n_) * ddy;
+    right_.middleRows(i * n_, n_).noalias() = second_.leftCols(n_) * dy_[at];
+    right_.middleRows(i * n_, n_).noalias() += memory_->jacobian[at].leftCols(n_) * ddy;
     right_.block(i * n_, columns_ - parameters_, n_, parameters_) += second_.rightCols(parameters_);
   }
   right_ = memory_->lu.solve(right_);
@@ -208,7 +212,9 @@ void GaussStep::second(Vector& dx_v, double dh_v, In dp_v, Matrix& ddx, In ddh) 
     for (int j = 0; j < stages; ++j) ddy_[static_cast<std::size_t>(i)] += (h_ * a[i][j]) * ddk_[static_cast<std::size_t>(j)];
   for (int j = 0; j < stages; ++j) {
     const auto at = static_cast<std::size_t>(j);
-    ddx += (h_ * b[j]) * ddk_[at] + (b[j] * dh_v) * dk_[at] + (b[j] * dk_v.col(j)) * dh_.transpose() + (b[j] * memory_->k.col(j)) * ddh.transpose();
+    ddx += (h_ * b[j]) * ddk_[at] + (b[j] * dh_v) * dk_[at];
+    ddx.noalias() += (b[j] * dk_v.col(j)) * dh_.transpose();
+    ddx.noalias() += (b[j] * memory_->k.col(j)) * ddh.transpose();
     dx_v += (h_ * b[j]) * dk_v.col(j) + (b[j] * dh_v) * memory_->k.col(j);
   }
 }

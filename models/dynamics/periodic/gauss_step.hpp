@@ -61,9 +61,9 @@ class GaussStep {
   const Problem& flow_;
   int n_, parameters_, columns_;
   double h_ = 0.0;
-  Vector u_, key_, end_, rhs_, delta_, f_;
+  Vector u_, key_, end_, rhs_, delta_, f_, along_;
   GaussMemory* memory_ = nullptr;
-  Matrix block_, second_;
+  Matrix block_, dk_v_, second_;
   std::vector<Vector> y_, dy_v_;
   std::vector<Matrix> dk_, dy_, ddy_, ddk_;  // a stage each
   Matrix right_;                             // stages * n x columns

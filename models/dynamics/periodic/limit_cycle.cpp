@@ -86,12 +86,11 @@ void LimitCycle::rows_and_columns(MatrixOut j) const {
 bool LimitCycle::evaluate(In u, int order, In v, Out* r, MatrixOut* j) const {
   const bool known = order <= 1 && sweep_->ok && sweep_->at == u;
   if (!known && (!u.allFinite() || !follow(u) || !sweep_segments(u, order, v))) return false;
-  const Sweep& w = *sweep_;
+  Sweep& w = *sweep_;
   if (r) {
     const int m = segments_;
-    Matrix gap(flow_.size(), m);
-    for (int i = 0; i < m; ++i) gap.col(i) = w.end.col(i) - w.x.col((i + 1) % m);
-    from_points(gap, *r);
+    for (int i = 0; i < m; ++i) w.gap.col(i) = w.end.col(i) - w.x.col((i + 1) % m);
+    from_points(w.gap, *r);
     (*r)[0] = w.harmonic[0] - u[first_harmonic];
     (*r)[1] = w.harmonic[1];
   }

@@ -29,6 +29,7 @@ struct LimitCycle::Sweep {
         step(flow, columns),
         end(flow.size(), segments),
         x(flow.size(), segments),
+        gap(flow.size(), segments),
         phi(static_cast<std::size_t>(segments), Matrix(flow.size(), columns)),
         ddphi(phi),
         harmonic_slope(columns, 2 * segments),
@@ -40,7 +41,7 @@ struct LimitCycle::Sweep {
         ddh(columns) {}
   int columns;
   GaussStep step;
-  Matrix end, x;
+  Matrix end, x, gap;
   std::vector<Matrix> phi, ddphi;
   Eigen::Vector2d harmonic;
   Matrix harmonic_slope, harmonic_second;  // two columns a segment
