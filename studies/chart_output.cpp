@@ -15,6 +15,10 @@ constexpr const char* point_types =
 
 }  // namespace
 
+std::string curve_name(const continuation::DefiningCurve& curve, std::size_t number) {
+  return fmt::format("{}{}", curve.subtype.empty() ? to_string(curve.type) : curve.subtype.c_str(), number);
+}
+
 Vector ChartCurve::point(const Vector& u) const {
   if (std::isnan(held)) return u;
   Vector wide(u.size() + 1);

@@ -15,6 +15,9 @@ struct ChartCurve {
   Vector point(const Vector& u) const;    ///< that, of (x, p1, p2)
 };
 
+/// "LP3": by type, or subtype, and its number in the chart.
+std::string curve_name(const continuation::DefiningCurve& curve, std::size_t number);
+
 struct ChartOutput {
   std::string first, first_unit, second, second_unit;
   std::string held = {}, held_unit = {};  ///< name of the third parameter, or ""

@@ -81,7 +81,7 @@ void CycleChart::follow(const CycleFamily& family) {
     chart.set_observer([](const Branch&, int) { return !interrupted; });
     chart.on_warning([this](const std::string& text) { context_.warn(text); });
     chart.on_curve([this, level, &family](DefiningCurve& curve) {
-      curve.name = fmt::format("{}{}", curve.subtype.empty() ? to_string(curve.type) : curve.subtype.c_str(), curves_.size() + 1);
+      curve.name = curve_name(curve, curves_.size() + 1);
       curves_.push_back({.curve = curve, .columns = columns_});
       multiple_.push_back(1 << level);
       if (on_curve_) on_curve_(shown(curves_.back()));

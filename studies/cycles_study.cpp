@@ -8,6 +8,7 @@
 #include "studies/cycle_motions.hpp"
 #include "studies/cycle_output.hpp"
 #include "studies/equilibrium_source.hpp"
+#include "studies/second_parameter.hpp"
 
 namespace whirl::studies {
 namespace {
@@ -21,23 +22,8 @@ struct Setup {
   std::string parameter, unit_of_time;
   CycleOptions cycles;
   std::vector<Vector> integrate_from;
-  std::string second;  // "": no chart
-  CycleChart::Options chart;
+  SecondParameter second;  // no name: no chart
 };
-
-void add_second_keys(Schema& s) {
-  s.add({.name = "second.parameter",
-         .description = "second parameter of the chart of special points of cycles; without it no chart",
-         .default_value = std::string{}});
-  s.add({.name = "second.range", .description = "its lower and upper end", .default_value = std::vector<double>{}, .optional = true, .max_items = 2});
-  s.add({.name = "second.user_values",
-         .description = "values of the second parameter at which points of every curve are listed (UZ)",
-         .default_value = std::vector<double>{}});
-  s.add({.name = "second.curves",
-         .description = "which special points to follow",
-         .default_value = std::vector<std::string>{"LP", "BP", "PD", "TR"},
-         .choices = {"LP", "BP", "PD", "TR"}});
-}
 
 Schema schema() {
   Schema s("cycles", "limit cycles born at the Hopf points of any system given as expressions, or of a cable's averaged slow flow");
@@ -76,37 +62,10 @@ Schema schema() {
          .closed_upper = true});
   s.add_count("cycles.segments", "parts of the period whose ends are unknowns; more where multipliers are very large", 8, 1, 200);
   s.add_count("cycles.max_points", "of one branch of cycles in one direction", 1000, 2, 1e6);
-  add_second_keys(s);
+  add_second_keys(s, {.what = "second parameter of the chart of special points of cycles; without it no chart",
+                      .parameter = "",
+                      .curves = {"LP", "BP", "PD", "TR"}});
   return s;
-}
-
-void read_second(const Configuration& c, Setup& s) {
-  const auto range = c.has("second.range") ? c.numbers("second.range") : std::vector<double>{};
-  s.second = c.text("second.parameter");
-  if (s.second.empty()) {
-    if (!range.empty()) throw c.error("second.range", "goes with second.parameter, which is not given");
-    return;
-  }
-  if (range.size() != 2 || !(range[0] < range[1])) throw c.error("second.range", "must hold two increasing values");
-  if (s.second == s.parameter) throw c.error("second.parameter", "must differ from continuation.parameter");
-  s.source->check_lens("second.parameter", s.second, "second.range", range[0], range[1]);
-  s.chart.second = s.source->value(s.second);
-  if (s.chart.second < range[0] || s.chart.second > range[1])
-    throw c.error("second.range", fmt::format("must contain the value {:g} that {} has in this file", s.chart.second, s.second));
-  TwoParameterOptions& follow = s.chart.follow;
-  follow.walk = s.cycles.network.walk;
-  follow.walk.max_points = static_cast<int>(c.integer("cycles.max_points"));
-  follow.walk.user_values = c.numbers("second.user_values");
-  for (const double x : follow.walk.user_values)
-    if (x < range[0] || x > range[1]) throw c.error("second.user_values", fmt::format("must lie in second.range, got {:g}", x));
-  follow.range1[0] = s.cycles.network.walk.lower;
-  follow.range1[1] = s.cycles.network.walk.upper;
-  follow.range2[0] = range[0];
-  follow.range2[1] = range[1];
-  for (const auto& name : c.texts("second.curves"))
-    for (const EventType type : {EventType::fold, EventType::branch_point, EventType::period_doubling, EventType::torus})
-      if (name == to_string(type)) s.chart.curves.push_back(type);
-  s.chart.cycle = s.cycles.cycle;
 }
 
 Setup setup(const Configuration& c) {
@@ -131,7 +90,15 @@ Setup setup(const Configuration& c) {
   for (const double p : c.numbers("cycles.integrate_at"))
     if (p < s.cycles.network.walk.lower || p > s.cycles.network.walk.upper)
       throw c.error("cycles.integrate_at", "each value must lie in continuation.range");
-  read_second(c, s);
+  const bool ranged = c.has("second.range") && !c.numbers("second.range").empty();
+  if (c.text("second.parameter").empty()) {
+    if (ranged) throw c.error("second.range", "goes with second.parameter, which is not given");
+  } else {
+    const EquilibriumSource& source = *s.source;
+    if (!ranged) throw c.error("second.range", "must hold two increasing values");
+    s.second = read_second(c, s.parameter, s.cycles.network.walk, lens_of(source));
+    s.second.follow.walk.max_points = static_cast<int>(c.integer("cycles.max_points"));
+  }
   if (n < 2) throw c.error("study", "\"cycles\" needs a system of at least two variables");
   return s;
 }
@@ -184,19 +151,23 @@ std::vector<IntegratedMotion> integrate(const Configuration& c, const Setup& s, 
       if (!why.empty()) context.warn(fmt::format("{}: {}", origin, why));
       if (options.counted == 0 || interrupted) continue;
       motions.push_back({p, x, models::lyapunov_spectrum(flow, x, Vector::Constant(1, p), options)});
+      if (interrupted) {
+        motions.pop_back();  // broken off
+        return motions;
+      }
       models::LyapunovSpectrum& spectrum = motions.back().spectrum;
       if (spectrum.kind == models::FlowMotion::torus && why != CycleBranches::not_periodic) spectrum.kind = models::FlowMotion::cycle;  // it closed
-      if (!spectrum.ok() && !interrupted) context.warn(fmt::format("{}: no Lyapunov exponents, the motion diverges", origin));
+      if (!spectrum.ok()) context.warn(fmt::format("{}: no Lyapunov exponents, the motion diverges", origin));
     }
   return motions;
 }
 
 // Every special point of every family in the second parameter.
 void follow_chart(const Setup& s, const CycleBranches& cycles, ResultFile& file, RunContext& context) {
-  const auto flow2 = s.source->problem({s.parameter, s.second});
+  const auto flow2 = s.source->problem({s.parameter, s.second.name});
   CycleReader reader(*flow2, s.source->columns(*flow2), s.cycles.cycle);
-  CycleChart chart(*flow2, s.chart, reader.extremes(s.unit_of_time), context);
-  const ChartOutput output{s.parameter, s.source->unit(s.parameter), s.second, s.source->unit(s.second)};
+  CycleChart chart(*flow2, {s.second.follow, s.second.curves, s.second.value, s.cycles.cycle}, reader.extremes(s.unit_of_time), context);
+  const ChartOutput output{s.parameter, s.source->unit(s.parameter), s.second.name, s.source->unit(s.second.name)};
   chart.on_curve([&](const ChartCurve& curve) {
     output.write_curve(file, curve);
     file.flush();
@@ -282,7 +253,7 @@ ExitStatus run(const Configuration& c, RunContext& context) {
   if (!motions.empty()) context.report.put("motions", MotionTable::json(motions, s.parameter));
   context.print(output.text(all));
   if (!motions.empty()) context.print(fmt::format("\n{}", table.text(motions)));
-  if (!s.second.empty() && !interrupted) follow_chart(s, cycles, file, context);
+  if (!s.second.name.empty() && !interrupted) follow_chart(s, cycles, file, context);
   return finish(file, context, all);
 }
 

@@ -14,14 +14,6 @@ std::string name_of(const ModulationLabels& labels, std::pair<int, int> row) {
 
 std::vector<double> values(const Eigen::VectorXd& v) { return {v.data(), v.data() + v.size()}; }
 
-}  // namespace
-
-void add_modulation_keys(Schema& s) {
-  s.add_count("verification.modulation_periods",
-              "excitation periods over which the averaged equations run beside the demodulated motion, from each start at rest; 0: none", 60, 0,
-              100000);
-}
-
 void write_modulations(ResultFile& file, const ModulationLabels& labels, const std::vector<ModulationRun>& runs) {
   for (std::size_t i = 0; i < runs.size(); ++i) {
     const models::Modulation& m = runs[i].modulation;
@@ -66,7 +58,8 @@ Json modulations_json(const ModulationLabels& labels, const std::vector<Modulati
 
 std::string modulations_text(const ModulationLabels& labels, const std::vector<ModulationRun>& runs) {
   std::string out =
-      "averaged equations in time against the demodulated motion: peaks integrated / averaged, largest difference over the largest amplitude\n";
+      "averaged equations in time against the demodulated motion: peaks integrated / averaged, largest difference over the largest averaged "
+      "amplitude\n";
   for (const auto& run : runs) {
     const models::Modulation& m = run.modulation;
     out += fmt::format("{:>8.4f} {:<24}", run.omega, run.start);
@@ -83,6 +76,22 @@ std::string modulations_text(const ModulationLabels& labels, const std::vector<M
     out += fmt::format("  difference {:.3f}{}\n", m.difference(), m.why.empty() ? "" : "; ends early: " + m.why);
   }
   return out;
+}
+
+}  // namespace
+
+void add_modulation_keys(Schema& s) {
+  s.add_count("verification.modulation_periods",
+              "excitation periods over which the averaged equations run beside the demodulated motion, from each start at rest; 0: none", 60, 0,
+              100000);
+}
+
+void tell_modulations(ResultFile& file, RunContext& context, const ModulationLabels& labels, const std::vector<ModulationRun>& runs) {
+  if (runs.empty()) return;
+  write_modulations(file, labels, runs);
+  file.flush();
+  context.report.put("modulation", modulations_json(labels, runs));
+  context.print(fmt::format("\n{}", modulations_text(labels, runs)));
 }
 
 }  // namespace whirl::studies

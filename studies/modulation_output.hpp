@@ -2,12 +2,11 @@
 /// Averaged equations in time beside the demodulated motion, from starts at rest: tables, JSON and text.
 ///
 ///     for (const auto& start : starts) runs.push_back({start, models::modulation(system, averaged, p, start.state, options)});
-///     write_modulations(file, labels, runs);          // /verification/modulation/run<n>
-///     context.print(modulations_text(labels, runs));
+///     tell_modulations(file, context, labels, runs);          // /verification/modulation/run<n>, "modulation", a line a run
 
 #include "models/dynamics/averaging/modulation.hpp"
-#include "studies/json.hpp"
 #include "studies/result_file.hpp"
+#include "studies/run_context.hpp"
 
 namespace whirl::studies {
 
@@ -26,8 +25,7 @@ struct ModulationLabels {
 };
 
 void add_modulation_keys(Schema& schema);
-void write_modulations(ResultFile& file, const ModulationLabels& labels, const std::vector<ModulationRun>& runs);
-Json modulations_json(const ModulationLabels& labels, const std::vector<ModulationRun>& runs);
-std::string modulations_text(const ModulationLabels& labels, const std::vector<ModulationRun>& runs);
+/// To the file, the report and the screen; nothing if there are no runs.
+void tell_modulations(ResultFile& file, RunContext& context, const ModulationLabels& labels, const std::vector<ModulationRun>& runs);
 
 }  // namespace whirl::studies

@@ -6,6 +6,7 @@
 #include "studies/chart_output.hpp"
 #include "studies/common_keys.hpp"
 #include "studies/orbit_output.hpp"
+#include "studies/second_parameter.hpp"
 
 namespace whirl::studies {
 namespace {
@@ -17,9 +18,7 @@ struct Setup {
   std::string parameter;
   OrbitBranchOptions orbits;
   int shown_harmonics = 3;
-  std::string second;  // "": no curves
-  TwoParameterOptions follow;
-  std::vector<EventType> curves;
+  SecondParameter second;  // no name: no curves
   std::vector<double> checked;
 };
 
@@ -64,21 +63,8 @@ Schema schema() {
   add_continuation_keys(s, "omega");
   add_periodic_keys(s);
   add_seed_keys(s);
-  s.add({.name = "second.parameter",
-         .description = "second parameter of the chart of special points",
-         .default_value = std::string("support_motion.amplitude")});
-  s.add({.name = "second.range",
-         .description = "its lower and upper end; without it no chart",
-         .default_value = std::vector<double>{},
-         .optional = true,
-         .max_items = 2});
-  s.add({.name = "second.user_values",
-         .description = "values of the second parameter at which points of every curve are listed (UZ)",
-         .default_value = std::vector<double>{}});
-  s.add({.name = "second.curves",
-         .description = "which special points to follow",
-         .default_value = std::vector<std::string>{"LP", "BP", "PD", "TR"},
-         .choices = {"LP", "BP", "PD", "TR"}});
+  add_second_keys(
+      s, {.what = "second parameter of the chart of special points", .parameter = "support_motion.amplitude", .curves = {"LP", "BP", "PD", "TR"}});
   s.add({.name = "verification.omega",
          .description = "values of the continuation parameter at which every motion is carried over its period by CVODE and drawn",
          .default_value = std::vector<double>{}});
@@ -93,35 +79,6 @@ std::vector<Vector> starts_of(const Configuration& c, std::size_t coordinates) {
   for (std::size_t i = 0; i < numbers.size(); i += coordinates)
     starts.emplace_back(Eigen::Map<const Vector>(numbers.data() + i, static_cast<Eigen::Index>(coordinates)));
   return starts;
-}
-
-std::vector<EventType> wanted_types(const std::vector<std::string>& names) {
-  std::vector<EventType> types;
-  for (const auto& name : names)
-    for (const EventType type : {EventType::fold, EventType::branch_point, EventType::period_doubling, EventType::torus})
-      if (name == to_string(type)) types.push_back(type);
-  return types;
-}
-
-void read_second(const Configuration& c, Setup& s) {
-  const auto range = c.has("second.range") ? c.numbers("second.range") : std::vector<double>{};
-  if (range.empty()) return;
-  if (range.size() != 2 || !(range[0] < range[1])) throw c.error("second.range", "must hold two increasing values");
-  s.second = c.text("second.parameter");
-  if (s.second == s.parameter) throw c.error("second.parameter", "must differ from continuation.parameter");
-  check_forced_lens(c, "second.parameter", s.second, "second.range", range[0], range[1]);
-  const double here = forced_lens_value(c, s.second);
-  if (here < range[0] || here > range[1])
-    throw c.error("second.range", fmt::format("must contain the value {:g} that {} has in this file", here, s.second));
-  s.follow.walk = s.orbits.network.walk;
-  s.follow.walk.user_values = c.numbers("second.user_values");
-  for (const double x : s.follow.walk.user_values)
-    if (x < range[0] || x > range[1]) throw c.error("second.user_values", fmt::format("must lie in second.range, got {:g}", x));
-  s.follow.range1[0] = s.orbits.network.walk.lower;
-  s.follow.range1[1] = s.orbits.network.walk.upper;
-  s.follow.range2[0] = range[0];
-  s.follow.range2[1] = range[1];
-  s.curves = wanted_types(c.texts("second.curves"));
 }
 
 Setup setup(const Configuration& c) {
@@ -147,7 +104,12 @@ Setup setup(const Configuration& c) {
   for (const double p : c.numbers("verification.omega"))
     if (p < walk.lower || p > walk.upper) throw c.error("verification.omega", fmt::format("must lie in continuation.range, got {:g}", p));
   s.checked = c.numbers("verification.omega");
-  read_second(c, s);
+  if (c.has("second.range") && !c.numbers("second.range").empty())
+    s.second = read_second(c, s.parameter, walk,
+                           {[&](const std::string& lens) { return forced_lens_value(c, lens); },
+                            [&](const std::string& key, const std::string& lens, const std::string& range_key, double lower, double upper) {
+                              check_forced_lens(c, key, lens, range_key, lower, upper);
+                            }});
   return s;
 }
 
@@ -179,21 +141,21 @@ struct FollowedChart {
 // Every special point of every branch followed in the second parameter, each curve once.
 FollowedChart follow_all(const Configuration& c, const Setup& s, const OrbitBranches& orbits, ResultFile& file, RunContext& context) {
   FollowedChart all;
-  const ForcedSystem wide = forced_system_of(c, {s.parameter, s.second});
-  all.output = {s.parameter, wide.lens_units[0], s.second, wide.lens_units[1]};
-  const double p2 = forced_lens_value(c, s.second);
+  const ForcedSystem wide = forced_system_of(c, {s.parameter, s.second.name});
+  all.output = {s.parameter, wide.lens_units[0], s.second.name, wide.lens_units[1]};
+  const double p2 = s.second.value;
   for (int level = 0; level < orbits.levels(); ++level) {
     all.balances.push_back(std::make_unique<HarmonicBalance>(
         wide.system,
         HarmonicBalanceOptions{
             .harmonics = orbits.balance(level).harmonics(), .nu = orbits.balance(level).nu(), .reflections = wide.reflections, .floquet = {}}));
     const HarmonicBalance& hb = *all.balances.back();
-    Chart chart(hb, s.follow);
-    chart.want(s.curves);
+    Chart chart(hb, s.second.follow);
+    chart.want(s.second.curves);
     chart.set_observer([](const Branch&, int) { return !interrupted; });
     chart.on_warning([&](const std::string& text) { context.warn(text); });
     chart.on_curve([&](DefiningCurve& curve) {
-      curve.name = fmt::format("{}{}", curve.subtype.empty() ? to_string(curve.type) : curve.subtype.c_str(), all.curves.size() + 1);
+      curve.name = curve_name(curve, all.curves.size() + 1);
       const bool doubled = curve.type == EventType::period_doubling;
       all.curves.push_back({.curve = curve, .columns = motion_columns(doubled ? dynamic_cast<const HarmonicBalance&>(hb.doubled()) : hb, wide)});
       all.output.write_curve(file, all.curves.back());
@@ -255,7 +217,7 @@ ExitStatus run(const Configuration& c, RunContext& context) {
     else context.print(fmt::format("{}\n", text));
   }
   const auto failures = interrupted ? std::vector<std::string>{} : verify(s, orbits, file, context);
-  if (!s.second.empty() && !interrupted) {
+  if (!s.second.name.empty() && !interrupted) {
     const FollowedChart chart = follow_all(c, s, orbits, file, context);
     chart.output.write_points(file, "/curve_points", chart.curves);
     context.report.put("curve_points", chart.output.points_json(chart.curves)).put("curves", ChartOutput::curves_json(chart.curves));

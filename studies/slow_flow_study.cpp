@@ -255,11 +255,7 @@ void run_modulations(const Configuration& c, const Setup& s, ResultFile& file, R
                       modulation(s.forced.at(p), {*s.averaged.flow, s.averaged.ansatz, s.averaged.motion}, p,
                                  off_symmetry(s.forced, y, c.number("verification.perturbation")), o)});
     }
-  if (runs.empty()) return;
-  write_modulations(file, labels, runs);
-  file.flush();
-  context.report.put("modulation", modulations_json(labels, runs));
-  context.print(fmt::format("\n{}", modulations_text(labels, runs)));
+  tell_modulations(file, context, labels, runs);
 }
 
 // Integrated runs beside the branches; what did not settle.

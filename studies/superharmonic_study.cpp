@@ -188,12 +188,8 @@ void run_modulations(const Configuration& c, const Setup& s, const Superharmonic
       runs.push_back({omega, fmt::format("q1 = {:g}, q2 = {:g}", v.starts[i], v.starts[i + 1]),
                       models::modulation(system, averaged, Vector::Constant(1, omega), y, o)});
     }
-  if (runs.empty()) return;
   const ModulationLabels labels{{"q1", "q2"}, "m", 1};
-  write_modulations(file, labels, runs);
-  file.flush();
-  context.report.put("modulation", modulations_json(labels, runs));
-  context.print(fmt::format("\n{}", modulations_text(labels, runs)));
+  tell_modulations(file, context, labels, runs);
 }
 
 // Integrated runs and sweeps beside the branches; what did not settle.

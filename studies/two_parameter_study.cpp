@@ -10,6 +10,7 @@
 #include "studies/chart_output.hpp"
 #include "studies/common_keys.hpp"
 #include "studies/equilibrium_source.hpp"
+#include "studies/second_parameter.hpp"
 
 namespace whirl::studies {
 namespace {
@@ -18,10 +19,9 @@ using namespace continuation;
 
 struct Setup {
   std::unique_ptr<EquilibriumSource> source;
-  std::string first, chart_first, second;  // of the branches and of the chart: most often the same
+  std::string first, chart_first;  // of the branches and of the chart: most often the same
   NetworkOptions network;
-  TwoParameterOptions follow;
-  std::vector<EventType> curves;
+  SecondParameter second;
   bool leaves_first() const { return chart_first != first; }
 };
 
@@ -41,23 +41,10 @@ Schema schema() {
          .default_value = std::vector<double>{},
          .optional = true,
          .max_items = 2});
-  s.add({.name = "second.parameter",
-         .description = "the other parameter of the chart; its value in this file is where the special points are looked for first",
-         .default_value = std::string("support_motion.amplitude")});
-  s.add({.name = "second.range",
-         .description = "its lower and upper end",
-         .default_value = std::vector<double>{},
-         .required = true,
-         .min_items = 2,
-         .max_items = 2,
-         .example = Value{std::vector<double>{0.05, 0.8}}});
-  s.add({.name = "second.user_values",
-         .description = "values of the second parameter at which points of every curve are listed (UZ)",
-         .default_value = std::vector<double>{}});
-  s.add({.name = "second.curves",
-         .description = "which special points to follow",
-         .default_value = std::vector<std::string>{"LP", "BP", "HB", "RP"},
-         .choices = {"LP", "BP", "HB", "RP"}});
+  add_second_keys(s, {.what = "the other parameter of the chart; its value in this file is where the special points are looked for first",
+                      .parameter = "support_motion.amplitude",
+                      .curves = {"LP", "BP", "HB", "RP"},
+                      .required = true});
   return s;
 }
 
@@ -71,13 +58,13 @@ void read_first(const Configuration& c, Setup& s) {
     return;
   }
   if (range.size() != 2 || !(range[0] < range[1])) throw c.error("first.range", "must hold two increasing values, the ends of first.parameter");
-  if (s.chart_first == s.second) throw c.error("first.parameter", "must differ from second.parameter");
+  if (s.chart_first == s.second.name) throw c.error("first.parameter", "must differ from second.parameter");
   s.source->check_lens("first.parameter", s.chart_first, "first.range", range[0], range[1]);
   const double value = s.source->value(s.chart_first);
   if (value < range[0] || value > range[1])
     throw c.error("first.range", fmt::format("must contain the value {:g} that {} has in this file", value, s.chart_first));
-  s.follow.range1[0] = range[0];
-  s.follow.range1[1] = range[1];
+  s.second.follow.range1[0] = range[0];
+  s.second.follow.range1[1] = range[1];
 }
 
 Setup setup(const Configuration& c) {
@@ -86,29 +73,11 @@ Setup setup(const Configuration& c) {
   s.first = c.text("continuation.parameter");
   check_parameter_given(c, "continuation.parameter");
   check_parameter_given(c, "second.parameter");
-  s.second = c.text("second.parameter");
   s.network = network_of(c);
   s.source->check_lens("continuation.parameter", s.first, "continuation.range", s.network.walk.lower, s.network.walk.upper);
   s.network.walk.peaks = peaks_of(c, *s.source);
-  const auto& range = c.numbers("second.range");
-  if (!(range[0] < range[1])) throw c.error("second.range", "must be increasing");
-  s.source->check_lens("second.parameter", s.second, "second.range", range[0], range[1]);
-  const double value = s.source->value(s.second);
-  if (value < range[0] || value > range[1])
-    throw c.error("second.range", fmt::format("must contain the value {:g} that {} has in this file", value, s.second));
-  if (s.first == s.second) throw c.error("second.parameter", "must differ from continuation.parameter");
-  s.follow.walk = s.network.walk;
-  s.follow.walk.user_values = c.numbers("second.user_values");
-  for (const double x : s.follow.walk.user_values)
-    if (x < range[0] || x > range[1]) throw c.error("second.user_values", fmt::format("must lie in second.range, got {:g}", x));
-  s.follow.range1[0] = s.network.walk.lower;
-  s.follow.range1[1] = s.network.walk.upper;
-  s.follow.range2[0] = range[0];
-  s.follow.range2[1] = range[1];
+  s.second = read_second(c, s.first, s.network.walk, lens_of(*s.source));
   read_first(c, s);
-  for (const auto& name : c.texts("second.curves"))
-    for (const EventType type : {EventType::fold, EventType::branch_point, EventType::hopf, EventType::peak})
-      if (name == to_string(type)) s.curves.push_back(type);
   return s;
 }
 
@@ -144,8 +113,8 @@ Charts::Charts(const Setup& s, ResultFile& file, RunContext& context)
     : s_(s),
       file_(file),
       context_(context),
-      problem_(s.source->problem(s.leaves_first() ? std::vector{s.chart_first, s.second, s.first} : std::vector{s.first, s.second})),
-      output_{s.chart_first, s.source->unit(s.chart_first), s.second, s.source->unit(s.second)} {
+      problem_(s.source->problem(s.leaves_first() ? std::vector{s.chart_first, s.second.name, s.first} : std::vector{s.first, s.second.name})),
+      output_{s.chart_first, s.source->unit(s.chart_first), s.second.name, s.source->unit(s.second.name)} {
   if (!s.leaves_first()) return;
   output_.held = s.first;
   output_.held_unit = s.source->unit(s.first);
@@ -155,12 +124,12 @@ Chart& Charts::chart_at(double held, const Observer& observer) {
   for (auto& c : charts_)
     if (!s_.leaves_first() || c.held == held) return *c.chart;
   HeldChart c{held, s_.leaves_first() ? std::make_unique<HeldProblem>(*problem_, held) : nullptr, nullptr};
-  c.chart = std::make_unique<Chart>(c.problem ? *c.problem : *problem_, s_.follow);
-  c.chart->want(s_.curves);
+  c.chart = std::make_unique<Chart>(c.problem ? *c.problem : *problem_, s_.second.follow);
+  c.chart->want(s_.second.curves);
   c.chart->set_observer(observer);
   c.chart->on_warning([this](const std::string& text) { context_.warn(text); });
   c.chart->on_curve([this, held](DefiningCurve& curve) {
-    curve.name = fmt::format("{}{}", curve.subtype.empty() ? to_string(curve.type) : curve.subtype.c_str(), curves_.size() + 1);
+    curve.name = curve_name(curve, curves_.size() + 1);
     curves_.push_back({curve, held, s_.source->columns(*problem_)});
     output_.write_curve(file_, curves_.back());
     file_.flush();
@@ -181,7 +150,7 @@ void Charts::follow(const std::vector<Branch>& branches, const Observer& observe
       double& first = point.u[point.u.size() - 1];
       const double held = s_.leaves_first() ? first : std::nan("");
       if (s_.leaves_first()) first = s_.source->value(s_.chart_first);
-      chart_at(held, observer).follow_from(point, s_.source->value(s_.second), fmt::format("{}:{}", b.name, label(b, i)));
+      chart_at(held, observer).follow_from(point, s_.second.value, fmt::format("{}:{}", b.name, label(b, i)));
     }
   for (auto& c : charts_)
     if (!interrupted) c.chart->follow_meetings();  // curves met on the way lead to further ones
