@@ -6,9 +6,11 @@
 
 #include "continuation/network.hpp"
 #include "core/newton.hpp"
+#include "models/closed_forms.hpp"
 #include "models/dynamics/periodic/cyclic_eigenvalues.hpp"
 #include "models/dynamics/periodic/settle_on_cycle.hpp"
 #include "models/equilibrium_model.hpp"
+#include "models/superharmonic.hpp"
 #include "studies/cycle_branches.hpp"
 
 using namespace whirl;
@@ -305,4 +307,45 @@ TEST_CASE("adaptive control: three doublings, all supercritical", "[cycles]") {
       for (const SpecialPoint& s : b.special)
         if (s.type == EventType::period_doubling) CHECK((s.has_coefficient && s.coefficient < 0.0));
   }
+}
+
+TEST_CASE("averaged Oresund stay: cycles of the upper Hopf point and their doubled families", "[cycles][slow]") {
+  // Shooting and collocation that agree; folds alternate about the homoclinic value 2.0309900842354.
+  const StayParameters<double> stay{{260.0, 2.17e9, 5.5e6, 81.05, 30.4, 9.81}, 0.01, 0.01, 0.5, 1.65};
+  const SuperharmonicFlow flow(stay, {.order = 2}, {Lens("omega")});
+  Network net(flow, {.walk = {.lower = 1.95, .upper = 2.3}});
+  for (const auto& x : coupled_states(flow.model().coefficients<double>(std::array<double, 1>{2.0}))) {
+    Vector u(5);
+    u << x, 2.0;
+    net.add_seed(u, "closed form");
+  }
+  CycleOptions options{.cycle = {.tolerance = 1e-11}, .period_doublings = 1, .longest_period = 95.0};
+  options.network.walk.lower = 1.95;
+  options.network.walk.upper = 2.3;
+  CycleBranches cycles(flow, options);
+  int hopf = 0;
+  for (const Branch& b : net.branches())
+    for (const SpecialPoint& s : b.special)
+      if (s.type == EventType::hopf && std::abs(s.u[4] - 2.03317655052) < 1e-9 && hopf++ == 0) CHECK(cycles.add_hopf(s, "HB").empty());
+  REQUIRE(cycles.families().size() == 1);
+  const auto points_of = [&](int level) {
+    std::vector<Point> all;
+    const auto& family = *cycles.families().front();
+    for (const Branch& b : family.net->network(level).branches())
+      for (const SpecialPoint& s : b.special) all.push_back({to_string(s.type), s.u[s.u.size() - 1], family.problem(level).period(s.u)});
+    return all;
+  };
+  const auto single = points_of(0), doubled = points_of(1);
+  require_point(single, "PD", 2.03213830306, 56.292747803);
+  require_point(single, "PD", 2.02839066554, 62.593636727);
+  require_point(single, "LP", 2.02832122375, 63.88021681);
+  require_point(single, "LP", 2.03236772079, 82.607482282);
+  require_point(single, "PD", 2.03229084675, 83.597095555);
+  require_point(single, "PD", 2.02999977642, 92.962778723);
+  require_point(single, "LP", 2.02999236093, 93.581828127);
+  require_point(doubled, "PD", 2.03185965143, 114.14638429);
+  require_point(doubled, "PD", 2.03150934452, 118.52061965);
+  require_point(doubled, "LP", 2.03146779035, 121.15023349);
+  require_point(doubled, "PD", 2.0284285685, 125.24891494);
+  CHECK(count(single, "unresolved") == 0);
 }
